@@ -1,0 +1,1 @@
+"""FreeCAD without a window."""

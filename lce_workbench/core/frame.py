@@ -1,0 +1,117 @@
+"""Where things lie on the plates: sheet, marks, spacer strips, glass. All in the sheet's coordinates, seen from above.
+
+::
+
+    +---------------------- plate ----------------------+   ^ y
+    | glue |strip| M                         M |strip|  |   |
+    | glue |strip|    +------- sheet ------+   |strip|  |   +--> x
+    | glue |strip|    |                    |   |strip|  |
+    | glue |strip|    +--------------------+   |strip|  |   The lower and upper edges between the strips
+    | glue |strip| M                         M |strip|  |   stay open: filling and venting.
+    +---------------------------------------------------+
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lce_solver.errors import InputError
+from lce_solver.types import Floats
+from lce_workbench.core.job import Job
+
+MARK_BOX = 1.5
+"""Side of the square that holds one cluster of marks [mm]."""
+
+GLASS = ((25.0, 25.0), (25.0, 75.0), (75.0, 25.0), (50.0, 50.0), (100.0, 100.0), (150.0, 150.0), (200.0, 200.0))
+"""Standard carriers, width x height [mm], in the order of preference."""
+
+
+@dataclass(frozen=True)
+class Rect:
+    """Axis-parallel rectangle [mm]."""
+
+    x0: float
+    y0: float
+    x1: float
+    y1: float
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height [mm]."""
+        return self.x1 - self.x0, self.y1 - self.y0
+
+    @property
+    def ring(self) -> Floats:
+        """(4, 2) corners, counter-clockwise [mm]."""
+        return np.array([(self.x0, self.y0), (self.x1, self.y0), (self.x1, self.y1), (self.x0, self.y1)])
+
+    def grown(self, dx: float, dy: float) -> Rect:
+        """The rectangle with its sides moved outwards."""
+        return Rect(self.x0 - dx, self.y0 - dy, self.x1 + dx, self.y1 + dy)
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """The regions of both plates."""
+
+    sheet: Rect
+    """Bounding box of the flat sheet."""
+    marks: Floats
+    """(4, 2) centres of the mark clusters: lower left, lower right, upper right, upper left [mm]."""
+    strips: tuple[Rect, Rect]
+    """Left and right spacer strip."""
+    plate: Rect
+    """Glass, both plates alike."""
+
+
+def arrange(uv: Floats, job: Job) -> Frame:
+    """Lay out the plates around the flat sheet.
+
+    Parameters
+    ----------
+    uv : (n, 2) points of the flat sheet [mm].
+
+    Raises
+    ------
+    InputError
+        The glass is too small for sheet, marks, strips and glue edges.
+    """
+    (x0, y0), (x1, y1) = uv.min(axis=0), uv.max(axis=0)
+    sheet = Rect(float(x0), float(y0), float(x1), float(y1))
+    reach = job.marks.clearance_mm + MARK_BOX / 2
+    marks = sheet.grown(reach, reach).ring
+    inner = sheet.grown(*[job.marks.clearance_mm + MARK_BOX + job.spacer.clearance_mm] * 2)
+    outer = inner.grown(job.spacer.strip_mm, 0.0)
+    needed = outer.grown(job.spacer.glue_mm, 0.0)
+    plate = _glass(needed, job)
+    strips = (
+        Rect(outer.x0, plate.y0, inner.x0, plate.y1),
+        Rect(inner.x1, plate.y0, outer.x1, plate.y1),
+    )
+    return Frame(sheet=sheet, marks=marks, strips=strips, plate=plate)
+
+
+def _glass(needed: Rect, job: Job) -> Rect:
+    """The carrier, centred on the origin: the job's own, or the first standard one that holds ``needed``."""
+    half_x = max(-needed.x0, needed.x1)
+    half_y = max(-needed.y0, needed.y1)
+    own = (job.plates.width_mm, job.plates.height_mm)
+    if own != (None, None):
+        width, height = own[0] or 2 * half_x, own[1] or 2 * half_y
+        if width < 2 * half_x or height < 2 * half_y:
+            msg = (
+                f"plates.width_mm x height_mm = {width:g} x {height:g} is too small: sheet, marks, spacer and glue edges "
+                f"need {2 * half_x:.1f} x {2 * half_y:.1f} mm; take a larger plate or a smaller sheet.width_mm"
+            )
+            raise InputError(msg)
+        return Rect(-width / 2, -height / 2, width / 2, height / 2)
+    for width, height in GLASS:
+        if width >= 2 * half_x and height >= 2 * half_y:
+            return Rect(-width / 2, -height / 2, width / 2, height / 2)
+    msg = (
+        f"sheet.width_mm = {job.sheet.width_mm:g} needs a plate of {2 * half_x:.1f} x {2 * half_y:.1f} mm, "
+        f"larger than the writer's {GLASS[-1][0]:g} x {GLASS[-1][1]:g} mm; make the sheet smaller"
+    )
+    raise InputError(msg)

@@ -1,0 +1,184 @@
+"""The job: one frozen tree of parameters, declared once. TOML, command line, help and FreeCAD properties come from it.
+
+Names carry the unit the user writes (`width_um`); the properties without a unit are the same lengths in mm.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import tomllib
+from collections.abc import Mapping
+from dataclasses import Field, dataclass, field, fields, is_dataclass, replace
+from pathlib import Path
+from typing import Any, get_type_hints
+
+from lce_solver.errors import InputError
+from lce_workbench.core.units import UM
+
+
+def param(
+    default: Any,
+    doc: str,
+    *,
+    unit: str = "",
+    above: float | None = None,
+    low: float | None = None,
+    high: float | None = None,
+    choices: tuple[str, ...] = (),
+    advice: str = "",
+) -> Any:
+    """Declare a parameter: default, help text, unit, limits (``above`` is exclusive) or choices."""
+    meta = {
+        "doc": doc, "unit": unit, "above": above, "low": low, "high": high, "choices": choices, "advice": advice,
+    }
+    return field(default=default, metadata=meta)
+
+
+@dataclass(frozen=True)
+class Target:
+    """The surface that the heated sheet takes. Its own length unit does not matter: the sheet's width fixes the size."""
+
+    mesh: str = param("", "mesh file: STL, OBJ, PLY or OFF, relative to the job file")
+    surface: str = param("", "a shipped surface instead of a mesh: dome, saddle, leaf, cone, sphere-zone, face")
+    subdivision: str = param(
+        "loop", "how a mesh coarser than the domains is refined: loop for smooth surfaces, midpoint for faceted ones",
+        choices=("loop", "midpoint"),
+    )
+    flip: bool = param(False, "turn the surface over, so that its other side becomes the top of the sheet")
+
+
+@dataclass(frozen=True)
+class MaterialSpec:
+    """A preset, or numbers, or a measured curve."""
+
+    preset: str = param("", "name of a preset in resources/materials.toml")
+    lambda_: float | None = param(None, "stretch along the director at the target temperature", above=0.0)
+    nu: float | None = param(None, "stretch across the director is lambda^-nu; 0.5 conserves volume")
+    curve: str = param("", "CSV file T_C, lambda_parallel, lambda_perpendicular, relative to the job file")
+    temperature_C: float | None = param(None, "temperature at which the curve is read", unit="degC")
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """The flat film."""
+
+    width_mm: float = param(20.0, "longest side of the flat sheet", unit="mm", above=0.0, high=200.0)
+    gap_um: float = param(100.0, "film thickness = spacer thickness", unit="um", above=0.0, high=5000.0)
+    twist_gain: float = param(1.0, "multiplies the twist; 2 reproduces the paper's S5 as printed", low=-10.0, high=10.0)
+    edge_overdrive: bool = param(False, "multiply the twist by 1 + 5 exp(-d / 2 mm), d = distance to the edge")
+
+    @property
+    def thickness(self) -> float:
+        """Prepared film thickness [mm]."""
+        return self.gap_um * UM
+
+
+@dataclass(frozen=True)
+class DomainSpec:
+    """Monolithic domains: one channel direction each."""
+
+    size_um: float = param(350.0, "mean edge of a domain", unit="um", above=0.0, high=10000.0)
+
+    @property
+    def size(self) -> float:
+        """Mean edge [mm]."""
+        return self.size_um * UM
+
+
+@dataclass(frozen=True)
+class ChannelSpec:
+    """The alignment channels."""
+
+    width_um: float = param(1.0, "channel width", unit="um", above=0.0, high=100.0)
+    spacing_um: float = param(1.0, "land between two channels", unit="um", above=0.0, high=100.0)
+    depth_um: float = param(0.6, "channel depth", unit="um", above=0.0, high=100.0)
+    guard_um: float = param(
+        0.5, "channels end this far inside their domain, so that neighbours stay two guards apart",
+        unit="um", above=0.0, high=100.0,
+    )
+
+    @property
+    def width(self) -> float:
+        """Channel width [mm]."""
+        return self.width_um * UM
+
+    @property
+    def pitch(self) -> float:
+        """Channel width + spacing [mm]."""
+        return (self.width_um + self.spacing_um) * UM
+
+    @property
+    def depth(self) -> float:
+        """Channel depth [mm]."""
+        return self.depth_um * UM
+
+    @property
+    def guard(self) -> float:
+        """Inset of the channels from the domain's border [mm]."""
+        return self.guard_um * UM
+
+    @property
+    def duty(self) -> float:
+        """Fraction of the patterned area that is channel."""
+        return self.width_um / (self.width_um + self.spacing_um)
+
+
+@dataclass(frozen=True)
+class Plates:
+    """The two epoxy plates on their glass carriers."""
+
+    width_mm: float | None = param(None, "glass width (x); default: the smallest standard glass that fits", unit="mm", above=0.0)
+    height_mm: float | None = param(None, "glass height (y)", unit="mm", above=0.0)
+    glass_mm: float = param(1.0, "glass thickness", unit="mm", above=0.0, high=20.0)
+    epoxy_um: float = param(50.0, "epoxy layer under the channels", unit="um", above=0.0, high=5000.0)
+
+
+@dataclass(frozen=True)
+class Marks:
+    """Alignment marks at the four corners, outside the sheet."""
+
+    clearance_mm: float = param(2.0, "from the sheet's bounding box to the marks", unit="mm", low=0.1, high=50.0)
+    tolerance_um: float = param(10.0, "largest accepted mismatch of the plates", unit="um", above=0.0, high=100.0)
+
+
+@dataclass(frozen=True)
+class Spacer:
+    """Mylar strips on the two glue edges (left and right); the other two edges stay open for filling."""
+
+    strip_mm: float = param(3.0, "width of a strip", unit="mm", above=0.0, high=50.0)
+    clearance_mm: float = param(1.0, "from the marks to the strips", unit="mm", low=0.0, high=50.0)
+    glue_mm: float = param(2.0, "free glass outside each strip for the glue", unit="mm", low=0.0, high=50.0)
+
+
+@dataclass(frozen=True)
+class SolverSpec:
+    """The inverse solver."""
+
+    starts: int = param(12, "number of stretch directions that compete", low=1, high=360)
+    tolerance: float = param(1e-8, "relative energy decrease at which the solver stops", unit="", above=0.0, high=1e-2)
+    max_iterations: int = param(5000, "iteration limit of one start", low=1, high=1000000)
+
+
+@dataclass(frozen=True)
+class Output:
+    """What is written."""
+
+    masks: tuple[str, ...] = param(("gds", "dxf"), "mask formats")
+    step_domains: tuple[int, ...] = param((), "domains whose channels become solids; default: the one nearest the centre")
+
+
+@dataclass(frozen=True)
+class Job:
+    """One job as resolved: every default written out."""
+
+    target: Target = field(default_factory=Target)
+    material: MaterialSpec = field(default_factory=MaterialSpec)
+    sheet: Sheet = field(default_factory=Sheet)
+    domains: DomainSpec = field(default_factory=DomainSpec)
+    channels: ChannelSpec = field(default_factory=ChannelSpec)
+    plates: Plates = field(default_factory=Plates)
+    marks: Marks = field(default_factory=Marks)
+    spacer: Spacer = field(default_factory=Spacer)
+    solver: SolverSpec = field(default_factory=SolverSpec)
+    output: Output = field(default_factory=Output)

@@ -1,0 +1,1 @@
+"""How masks and tables leave: one file per format, one visible table."""

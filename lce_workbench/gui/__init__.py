@@ -1,0 +1,1 @@
+"""FreeCAD with a window."""
