@@ -102,8 +102,8 @@ def _glass(needed: Rect, job: Job) -> Rect:
         width, height = own[0] or 2 * half_x, own[1] or 2 * half_y
         if width < 2 * half_x or height < 2 * half_y:
             msg = (
-                f"plates.width_mm x height_mm = {width:g} x {height:g} is too small: sheet, marks, spacer and glue edges "
-                f"need {2 * half_x:.1f} x {2 * half_y:.1f} mm; take a larger plate or a smaller sheet.width_mm"
+                f"plates.width_mm x height_mm = {width:g} x {height:g} is too small: sheet, marks, spacer and glue "
+                f"edges need {2 * half_x:.1f} x {2 * half_y:.1f} mm; take a larger plate or a smaller sheet.width_mm"
             )
             raise InputError(msg)
         return Rect(-width / 2, -height / 2, width / 2, height / 2)

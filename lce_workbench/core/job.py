@@ -5,15 +5,9 @@ Names carry the unit the user writes (`width_um`); the properties without a unit
 
 from __future__ import annotations
 
-import difflib
-import math
-import tomllib
-from collections.abc import Mapping
-from dataclasses import Field, dataclass, field, fields, is_dataclass, replace
-from pathlib import Path
-from typing import Any, get_type_hints
+from dataclasses import dataclass, field
+from typing import Any
 
-from lce_solver.errors import InputError
 from lce_workbench.core.units import UM
 
 
@@ -30,19 +24,26 @@ def param(
 ) -> Any:
     """Declare a parameter: default, help text, unit, limits (``above`` is exclusive) or choices."""
     meta = {
-        "doc": doc, "unit": unit, "above": above, "low": low, "high": high, "choices": choices, "advice": advice,
+        "doc": doc,
+        "unit": unit,
+        "above": above,
+        "low": low,
+        "high": high,
+        "choices": choices,
+        "advice": advice,
     }
     return field(default=default, metadata=meta)
 
 
 @dataclass(frozen=True)
 class Target:
-    """The surface that the heated sheet takes. Its own length unit does not matter: the sheet's width fixes the size."""
+    """The surface that the heated sheet takes; its own length unit does not matter, the sheet's width fixes the size."""
 
     mesh: str = param("", "mesh file: STL, OBJ, PLY or OFF, relative to the job file")
     surface: str = param("", "a shipped surface instead of a mesh: dome, saddle, leaf, cone, sphere-zone, face")
     subdivision: str = param(
-        "loop", "how a mesh coarser than the domains is refined: loop for smooth surfaces, midpoint for faceted ones",
+        "loop",
+        "how a mesh coarser than the domains is refined: loop for smooth surfaces, midpoint for faceted ones",
         choices=("loop", "midpoint"),
     )
     flip: bool = param(False, "turn the surface over, so that its other side becomes the top of the sheet")
@@ -94,8 +95,11 @@ class ChannelSpec:
     spacing_um: float = param(1.0, "land between two channels", unit="um", above=0.0, high=100.0)
     depth_um: float = param(0.6, "channel depth", unit="um", above=0.0, high=100.0)
     guard_um: float = param(
-        0.5, "channels end this far inside their domain, so that neighbours stay two guards apart",
-        unit="um", above=0.0, high=100.0,
+        0.5,
+        "channels end this far inside their domain, so that neighbours stay two guards apart",
+        unit="um",
+        above=0.0,
+        high=100.0,
     )
 
     @property
@@ -128,7 +132,9 @@ class ChannelSpec:
 class Plates:
     """The two epoxy plates on their glass carriers."""
 
-    width_mm: float | None = param(None, "glass width (x); default: the smallest standard glass that fits", unit="mm", above=0.0)
+    width_mm: float | None = param(
+        None, "glass width (x); default: smallest standard glass", unit="mm", above=0.0
+    )
     height_mm: float | None = param(None, "glass height (y)", unit="mm", above=0.0)
     glass_mm: float = param(1.0, "glass thickness", unit="mm", above=0.0, high=20.0)
     epoxy_um: float = param(50.0, "epoxy layer under the channels", unit="um", above=0.0, high=5000.0)
@@ -165,7 +171,9 @@ class Output:
     """What is written."""
 
     masks: tuple[str, ...] = param(("gds", "dxf"), "mask formats")
-    step_domains: tuple[int, ...] = param((), "domains whose channels become solids; default: the one nearest the centre")
+    step_domains: tuple[int, ...] = param(
+        (), "domains whose channels become solids; default: the most central"
+    )
 
 
 @dataclass(frozen=True)

@@ -32,9 +32,7 @@ def owned(value: ArrayLike, name: str, dtype: type, *shape: int | None) -> NDArr
         The array has another shape.
     """
     array: NDArray[Any] = np.array(value, dtype=dtype)
-    fits = array.ndim == len(shape) and all(
-        want in (None, have) for want, have in zip(shape, array.shape, strict=True)
-    )
+    fits = array.ndim == len(shape) and all(want in (None, have) for want, have in zip(shape, array.shape, strict=True))
     if not fits:
         msg = f"{name}: expected shape {shape}, got {array.shape}"
         raise ValueError(msg)
