@@ -132,9 +132,7 @@ class ChannelSpec:
 class Plates:
     """The two epoxy plates on their glass carriers."""
 
-    width_mm: float | None = param(
-        None, "glass width (x); default: smallest standard glass", unit="mm", above=0.0
-    )
+    width_mm: float | None = param(None, "glass width (x); default: smallest standard glass", unit="mm", above=0.0)
     height_mm: float | None = param(None, "glass height (y)", unit="mm", above=0.0)
     glass_mm: float = param(1.0, "glass thickness", unit="mm", above=0.0, high=20.0)
     epoxy_um: float = param(50.0, "epoxy layer under the channels", unit="um", above=0.0, high=5000.0)
@@ -171,9 +169,7 @@ class Output:
     """What is written."""
 
     masks: tuple[str, ...] = param(("gds", "dxf"), "mask formats")
-    step_domains: tuple[int, ...] = param(
-        (), "domains whose channels become solids; default: the most central"
-    )
+    step_domains: tuple[int, ...] = param((), "domains whose channels become solids; default: the most central")
 
 
 @dataclass(frozen=True)
