@@ -1,1 +1,1 @@
-"""What there is: the job, the domains, channels, marks, mask and cell. Pure: no FreeCAD, no CAD kernel, no files."""
+"""What there is: the job, the domains, channels, marks, mask and cell. No FreeCAD, no CAD kernel, no layout library."""

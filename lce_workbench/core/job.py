@@ -37,7 +37,7 @@ def param(
 
 @dataclass(frozen=True)
 class Target:
-    """The surface that the heated sheet takes; its own length unit does not matter, the sheet's width fixes the size."""
+    """The surface that the heated sheet takes. Its length unit does not matter: the sheet's width fixes the size."""
 
     mesh: str = param("", "mesh file: STL, OBJ, PLY or OFF, relative to the job file")
     surface: str = param("", "a shipped surface instead of a mesh: dome, saddle, leaf, cone, sphere-zone, face")
@@ -53,7 +53,7 @@ class Target:
 class MaterialSpec:
     """A preset, or numbers, or a measured curve."""
 
-    preset: str = param("", "name of a preset in resources/materials.toml")
+    preset: str = param("", "name of a preset in resources/materials.toml (rm82-pdt-1to1 when nothing is given)")
     lambda_: float | None = param(None, "stretch along the director at the target temperature", above=0.0)
     nu: float | None = param(None, "stretch across the director is lambda^-nu; 0.5 conserves volume")
     curve: str = param("", "CSV file T_C, lambda_parallel, lambda_perpendicular, relative to the job file")
@@ -168,7 +168,8 @@ class SolverSpec:
 class Output:
     """What is written."""
 
-    masks: tuple[str, ...] = param(("gds", "dxf"), "mask formats")
+    masks: tuple[str, ...] = param(("gds", "dxf"), "mask formats: gds, dxf")
+    freecad: bool = param(True, "write the FreeCAD document cad/cell.FCStd (needs freecadcmd)")
     step_domains: tuple[int, ...] = param((), "domains whose channels become solids; default: the most central")
 
 
