@@ -189,9 +189,12 @@ def _consistent(job: Job) -> Job:
             f"{job.channels.pitch * 1e3:g} um; make the domains larger or the channels finer"
         )
         raise InputError(msg)
-    if not any(given):
-        job = replace(job, material=replace(material, preset=DEFAULT_PRESET))
-    return job
+    return job if any(given) else with_default_material(job)
+
+
+def with_default_material(job: Job) -> Job:
+    """The job with the default preset."""
+    return replace(job, material=replace(job.material, preset=DEFAULT_PRESET))
 
 
 def dump(job: Job, *, comments: bool = False) -> str:

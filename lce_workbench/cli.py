@@ -1,0 +1,209 @@
+"""The command line: `./lce COMMAND`. The only place that prints and that turns faults into exit codes."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import signal
+import sys
+import time
+import traceback
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, NoReturn
+
+from lce_solver.errors import InputError, LceError
+from lce_solver.surface import load
+from lce_solver.types import Progress, silent
+from lce_workbench import ROOT, __version__, pipeline
+from lce_workbench.core import jobfile
+from lce_workbench.core.job import Job, Target
+from lce_workbench.outputs import read_manifest, told
+
+DEMO = ROOT / "templates" / "demo.toml"
+
+
+class Parser(argparse.ArgumentParser):
+    """Usage faults are one sentence and exit code 2."""
+
+    def error(self, message: str) -> NoReturn:
+        msg = f"{message}; see ./lce --help"
+        raise InputError(msg)
+
+
+def main(argv: list[str]) -> int:
+    """Run one command; return the exit code of the contract."""
+    debug = "--debug" in argv
+    signal.signal(signal.SIGTERM, _interrupt)
+    try:
+        args = _parser().parse_args(argv)
+        code: int = args.run(args)
+    except LceError as fault:
+        return _fail(str(fault), fault.exit_code, debug=debug)
+    except KeyboardInterrupt:
+        return _fail("interrupted; nothing was changed", 130, debug=debug)
+    except MemoryError:
+        return _fail("out of memory; take larger domains or a smaller sheet", 4, debug=debug)
+    except OSError as fault:
+        return _fail(f"{fault.filename or 'a file'}: {fault.strerror or fault}", 4, debug=debug)
+    except Exception as fault:  # a fault of ours: still one sentence, the traceback on request
+        return _fail(
+            f"internal fault ({type(fault).__name__}: {fault}); run with --debug and report it", 4, debug=debug
+        )
+    return code
+
+
+def _interrupt(*_: object) -> NoReturn:
+    raise KeyboardInterrupt
+
+
+def _fail(sentence: str, code: int, *, debug: bool) -> int:
+    if debug:
+        traceback.print_exc()
+    print("lce: " + " ".join(sentence.split()), file=sys.stderr)
+    return code
+
+
+def _parser() -> Parser:
+    common = Parser(add_help=False)
+    common.add_argument("--quiet", action="store_true", default=argparse.SUPPRESS, help="no progress")
+    common.add_argument(
+        "--json", action="store_true", default=argparse.SUPPRESS, help="progress as JSON lines on stdout"
+    )
+    common.add_argument("--debug", action="store_true", default=argparse.SUPPRESS, help="show the traceback of a fault")
+    parser = Parser(prog="lce", description="Molds for liquid-crystal-elastomer sheets.", parents=[common])
+    parser.add_argument("--version", action="version", version=f"lce {__version__}")
+    commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND", parser_class=Parser)
+
+    def command(name: str, run: Callable[[argparse.Namespace], int], doc: str) -> argparse.ArgumentParser:
+        sub = commands.add_parser(name, help=doc, description=doc, parents=[common])
+        sub.set_defaults(run=run, command=name)
+        return sub
+
+    demo = command("demo", _demo, "Designs the shipped face and builds all its molds.")
+    demo.add_argument("--out", type=Path, default=Path("out/demo"), metavar="DIR")
+    for name, doc in (
+        ("build", "Builds all outputs of a job."),
+        ("design", "Solves the inverse problem of a job: design.npz and domains.csv."),
+    ):
+        sub = command(name, _job, doc)
+        sub.add_argument("job", type=Path, metavar="JOB.toml")
+        sub.add_argument("--out", type=Path, metavar="DIR", help="output folder; default out/NAME beside the job file")
+        sub.add_argument("--set", nargs="+", action="extend", default=[], metavar="KEY=VALUE", dest="settings")
+    for name, doc in (
+        ("mask", "Draws the masks of a designed folder."),
+        ("cad", "Builds the CAD files of a designed folder."),
+    ):
+        sub = command(name, _stage, doc)
+        sub.add_argument("folder", type=Path, metavar="DIR")
+    new = command("new", _new, "Writes a commented job file for a mesh.")
+    new.add_argument("target", type=Path, metavar="TARGET")
+    new.add_argument("--out", type=Path, metavar="JOB.toml", help="default: TARGET with the ending .toml")
+    return parser
+
+
+def _demo(args: argparse.Namespace) -> int:
+    return _run(args, jobfile.load(DEMO), DEMO.parent, args.out, list(pipeline.STAGES))
+
+
+def _job(args: argparse.Namespace) -> int:
+    job = jobfile.load(args.job, args.settings)
+    out = args.out or args.job.parent / "out" / args.job.stem
+    names = list(pipeline.STAGES) if args.command == "build" else ["design"]
+    return _run(args, job, args.job.parent, out, names)
+
+
+def _stage(args: argparse.Namespace) -> int:
+    read_manifest(args.folder)
+    return _run(args, jobfile.load(args.folder / "job.toml"), args.folder, args.folder, [args.command])
+
+
+def _run(args: argparse.Namespace, job: Job, base: Path, out: Path, names: list[str]) -> int:
+    progress, close = _progress(args)
+    try:
+        code = pipeline.build(job, base, out, names, progress)
+    finally:
+        close()
+    _tell(args, out, names, code)
+    return code
+
+
+def _tell(args: argparse.Namespace, out: Path, names: list[str], code: int) -> None:
+    """Say what was found and where the files are."""
+    records = [r for r in read_manifest(out)["findings"] if r["stage"] in names]
+    if getattr(args, "json", False):
+        print(json.dumps({"out": str(out), "exit_code": code, "findings": records}))
+        return
+    for record in records:
+        if record["severity"] != "info" or not getattr(args, "quiet", False):
+            print(f"{record['severity']}: {record['message']}", file=sys.stderr)
+    if not getattr(args, "quiet", False):
+        print(f"{', '.join(names)} written to {out}", file=sys.stderr)
+
+
+def _new(args: argparse.Namespace) -> int:
+    target, out = args.target, args.out or args.target.with_suffix(".toml")
+    _, findings = load(target)
+    if out.exists():
+        msg = f"{out} exists; choose another name with --out"
+        raise InputError(msg)
+    job = jobfile.with_default_material(replace(Job(), target=Target(mesh=_relative(target, out.parent))))
+    with told(out):
+        out.write_text(jobfile.dump(job, comments=True), encoding="utf-8")
+    for finding in findings:
+        print(f"{finding.severity.value}: {finding.message}", file=sys.stderr)
+    print(f"{out} written; look it over, then ./lce build {out}", file=sys.stderr)
+    return 0
+
+
+def _relative(path: Path, folder: Path) -> str:
+    """``path`` as a job file in ``folder`` would name it."""
+    full, home = path.resolve(), folder.resolve()
+    return full.relative_to(home).as_posix() if full.is_relative_to(home) else str(full)
+
+
+def _progress(args: argparse.Namespace) -> tuple[Progress, Callable[[], None]]:
+    """The progress callback and how to end it: JSON lines, a bar on a terminal, or a line per stage."""
+    if getattr(args, "json", False):
+        return _json_line, lambda: None
+    if getattr(args, "quiet", False):
+        return silent, lambda: None
+    bar = Bar()
+    return bar, bar.close
+
+
+def _json_line(stage: str, fraction: float) -> None:
+    print(json.dumps({"stage": stage, "fraction": round(fraction, 4)}), flush=True)
+
+
+class Bar:
+    """Progress on stderr: a bar on a terminal, else one line a stage."""
+
+    def __init__(self) -> None:
+        self.stage, self.began, self.terminal = "", time.monotonic(), sys.stderr.isatty()
+
+    def __call__(self, stage: str, fraction: float) -> None:
+        seconds = time.monotonic() - self.began
+        if self.terminal:
+            full = round(30 * min(max(fraction, 0.0), 1.0))
+            print(
+                f"\r\x1b[K{'#' * full}{'.' * (30 - full)} {stage} {seconds:.0f} s", end="", file=sys.stderr, flush=True
+            )
+        elif stage != self.stage:
+            print(f"{seconds:6.1f} s  {stage}", file=sys.stderr, flush=True)
+        self.stage = stage
+
+    def close(self) -> None:
+        """Leave the terminal's line clean."""
+        if self.terminal:
+            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+
+
+def entry() -> Any:
+    """Start from the shell."""
+    sys.exit(main(sys.argv[1:]))
+
+
+if __name__ == "__main__":
+    entry()

@@ -1,0 +1,82 @@
+"""The target of the job at the resolution of the domains: a mesh file or a shipped surface."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from lce_solver.errors import InputError
+from lce_solver.metric import flatten
+from lce_solver.surface import load, mean_edge, subdivide
+from lce_solver.surfaces import SURFACES
+from lce_solver.types import Design, Finding, Floats, Ints, Material, Severity, Surface
+from lce_workbench.core.job import Job
+
+COARSE = 0.08
+"""Edge of the trial mesh of a shipped surface, as a fraction of its size; enough to know the sheet's scale."""
+
+
+def resolve(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Finding, ...]]:
+    """The target, its triangles about the size of the domains on the flat sheet (in the target's own unit).
+
+    Raises
+    ------
+    InputError
+        The mesh is not usable, or the surface's name is unknown.
+    """
+    if job.target.surface:
+        surface, found = _shipped(job, material), ()
+    else:
+        surface, found = _meshed(job, material, base)
+    return (turned(surface) if job.target.flip else surface), found
+
+
+def _shipped(job: Job, material: Material) -> Surface:
+    name = job.target.surface
+    if name not in SURFACES:
+        msg = f"target.surface {name!r} is unknown; shipped are {', '.join(SURFACES)}"
+        raise InputError(msg)
+    coarse = SURFACES[name](COARSE)
+    per_edge = flat_edge(coarse, job, material) / mean_edge(coarse)
+    return SURFACES[name](job.domains.size / per_edge)
+
+
+def _meshed(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Finding, ...]]:
+    surface, found = load(base / job.target.mesh)
+    size, flat = job.domains.size, flat_edge(surface, job, material)
+    if flat <= size:
+        return surface, found
+    fine = subdivide(surface, mean_edge(surface) * size / flat, job.target.subdivision)
+    text = (
+        f"the mesh is coarser than the domains (mean edge {flat * 1e3:.0f} um on the sheet), so it was refined from "
+        f"{len(surface.faces)} to {len(fine.faces)} triangles ({job.target.subdivision} subdivision)"
+    )
+    return fine, (*found, Finding("subdivided", Severity.INFO, text, flat * 1e3, job.domains.size_um, "um"))
+
+
+def flat_edge(surface: Surface, job: Job, material: Material) -> float:
+    """Mean edge on the flat sheet [mm] that these triangles would have, from one quick flattening."""
+    uv = flatten(surface, (material.along, material.across), angle=0.0, tolerance=1e-3).uv
+    return job.sheet.width_mm * _mean_length(uv, surface.faces) / float(np.ptp(uv, axis=0).max())
+
+
+def _mean_length(uv: Floats, faces: Ints) -> float:
+    return float(np.linalg.norm(uv[faces] - uv[np.roll(faces, 1, axis=1)], axis=2).mean())
+
+
+def turned(surface: Surface) -> Surface:
+    """The same surface seen from its other side."""
+    return replace(surface, faces=surface.faces[:, ::-1])
+
+
+def sized(design: Design, job: Job) -> tuple[Finding, ...]:
+    """Whether the domains have the size that was asked for."""
+    edge_um = _mean_length(design.uv, design.surface.faces) * 1e3
+    asked = job.domains.size_um
+    text = f"{len(design.theta)} domains have a mean edge of {edge_um:.0f} um, asked were {asked:g} um"
+    fine = edge_um < 0.5 * asked
+    if fine:
+        text += "; the mesh is finer than the domains, simplify it or ask for smaller domains"
+    return (Finding("domain_edge", Severity.WARNING if fine else Severity.INFO, text, edge_um, asked, "um"),)

@@ -1,0 +1,248 @@
+"""The stages in order, each from what the one before wrote: design, mask, cad."""
+
+from __future__ import annotations
+
+import os
+import platform
+import shutil
+import subprocess
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from lce_solver.design import design
+from lce_solver.errors import EnvironmentFault, InputError, LceError, SolverError
+from lce_solver.types import Design, Finding, Progress, Severity, Status, silent
+from lce_workbench import ROOT, __version__
+from lce_workbench.core import jobfile, material, target
+from lce_workbench.core.cell import assemble
+from lce_workbench.core.channels import hatch
+from lce_workbench.core.domains import partition
+from lce_workbench.core.frame import arrange
+from lce_workbench.core.job import Job
+from lce_workbench.core.marks import marks
+from lce_workbench.core.mask import compose
+from lce_workbench.export import EXPORTERS
+from lce_workbench.export.table import write_table
+from lce_workbench.outputs import (
+    as_record,
+    digest,
+    has_error,
+    read_design,
+    read_manifest,
+    staged,
+    write_design,
+    write_manifest,
+)
+
+PLATES = ("bottom", "top")
+
+Findings = tuple[Finding, ...]
+
+
+@dataclass(frozen=True)
+class Run:
+    """One stage at work: where it writes, what it was asked, whom it tells."""
+
+    folder: Path
+    job: Job
+    base: Path
+    """Folder that the job's file names are relative to."""
+    progress: Progress = silent
+
+
+def build(job: Job, base: Path, out: Path, names: Sequence[str], progress: Progress = silent) -> int:
+    """Run the stages ``names`` of one job into ``out``; return the exit code.
+
+    The first stage is ``design``; without it ``out`` must hold one, and its other files are kept.
+
+    Raises
+    ------
+    LceError
+        A fault that leaves ``out`` as it was.
+    """
+    former: dict[str, Any] = {} if names[0] == "design" else read_manifest(out)
+    records = [r for r in former.get("findings", ()) if r["stage"] not in names]
+    with staged(out, keep=out if former else None) as folder:
+        for name in names:
+            for output in OUTPUTS[name]:
+                _remove(folder / output)
+            findings = STAGES[name](Run(folder, job, base, progress))
+            records += [as_record(finding, name) for finding in findings]
+        code = exit_code(records)
+        write_manifest(
+            folder,
+            {
+                "versions": versions(),
+                "stages": [*[s for s in former.get("stages", ()) if s not in names], *names],
+                "inputs": former.get("inputs") or inputs(job, base),
+                "findings": records,
+                "exit_code": code,
+            },
+        )
+    return code
+
+
+def exit_code(records: Sequence[Mapping[str, Any]]) -> int:
+    """3 when the solver did not reach its tolerance, 1 when another finding is an error, else 0."""
+    errors = [r["check"] for r in records if r["severity"] == Severity.ERROR.value]
+    return 3 if "solver_status" in errors else int(has_error(records))
+
+
+def run_design(run: Run) -> Findings:
+    """Solve the inverse problem: `job.toml`, `design.npz`, `domains.csv`."""
+    job = run.job
+    matter, said = material.resolve(job.material, run.base)
+    goal, told = target.resolve(job, matter, run.base)
+    result = design(
+        goal,
+        matter,
+        width=job.sheet.width_mm,
+        thickness=job.sheet.thickness,
+        twist_gain=job.sheet.twist_gain,
+        edge_overdrive=job.sheet.edge_overdrive,
+        starts=job.solver.starts,
+        tolerance=job.solver.tolerance,
+        max_iterations=job.solver.max_iterations,
+        progress=run.progress,
+    )
+    (run.folder / "job.toml").write_text(jobfile.dump(rebased(job, run.base, run.folder)), encoding="utf-8")
+    write_design(result, run.folder / "design.npz")
+    domains = partition(result)
+    counts = [hatch(domains, plate, job.channels).counts for plate in PLATES]
+    write_table(domains, counts, run.folder / "domains.csv")
+    return (*said, *told, *result.findings, *target.sized(result, job), *sheet_findings(job))
+
+
+def rebased(job: Job, base: Path, folder: Path) -> Job:
+    """The job with its file names relative to ``folder``, so that `job.toml` can be built again from there."""
+
+    def moved(name: str) -> str:
+        return Path(os.path.relpath(base / name, folder)).as_posix() if name else ""
+
+    return replace(
+        job,
+        target=replace(job.target, mesh=moved(job.target.mesh)),
+        material=replace(job.material, curve=moved(job.material.curve)),
+    )
+
+
+def sheet_findings(job: Job) -> Findings:
+    """Values that are allowed but unusual."""
+    found = []
+    if job.sheet.gap_um not in {100.0, 150.0}:
+        text = (
+            f"sheet.gap_um = {job.sheet.gap_um:g} is not a stock Mylar thickness; the paper's films are 100 or 150 um"
+        )
+        found.append(Finding("gap", Severity.WARNING, text, job.sheet.gap_um, unit="um"))
+    if not 200 <= job.domains.size_um <= 500:
+        text = f"domains.size_um = {job.domains.size_um:g} is outside the 200 to 500 um that align well"
+        found.append(Finding("domain_size", Severity.WARNING, text, job.domains.size_um, unit="um"))
+    return tuple(found)
+
+
+def run_mask(run: Run) -> Findings:
+    """Draw both plates: `mask/bottom.*`, `mask/top.*`."""
+    unknown = [name for name in run.job.output.masks if name not in EXPORTERS]
+    if unknown:
+        msg = f"output.masks: format {unknown[0]!r} is unknown; known are {', '.join(EXPORTERS)}"
+        raise InputError(msg)
+    plan = fabricable(read_design(run.folder / "design.npz"))
+    domains, frame = partition(plan), arrange(plan.uv, run.job)
+    (run.folder / "mask").mkdir()
+    found: list[Finding] = []
+    for k, plate in enumerate(PLATES):
+        mask, findings = compose(frame, domains, hatch(domains, plate, run.job.channels), run.job)
+        found += findings
+        for j, name in enumerate(run.job.output.masks):
+            run.progress(f"mask {plate}.{name}", (k + j / len(run.job.output.masks)) / len(PLATES))
+            EXPORTERS[name](mask, run.folder / "mask" / f"{plate}.{name}")
+    run.progress("mask", 1.0)
+    return tuple(found)
+
+
+def fabricable(plan: Design) -> Design:
+    """The design itself, when a mold can be made of it.
+
+    Raises
+    ------
+    SolverError
+        The flat sheet is folded or overlaps itself.
+    """
+    status = plan.flattening.status
+    if status in {Status.FLIPPED, Status.OVERLAP, Status.NOT_FINITE}:
+        msg = (
+            f"{status.value}, so no mold can be made of it; `./lce design` writes the design to look at, "
+            "then try a larger piece of the target's rim, a stronger lambda, or more solver.starts"
+        )
+        raise SolverError(msg)
+    return plan
+
+
+def run_cad(run: Run) -> Findings:
+    """Build the cell: `cad/*.step`, `cad/cell.glb`, `cad/cell.FCStd`."""
+    from lce_workbench.cad.step import write_cad
+
+    plan = fabricable(read_design(run.folder / "design.npz"))
+    domains, frame = partition(plan), arrange(plan.uv, run.job)
+    channels = {plate: hatch(domains, plate, run.job.channels) for plate in PLATES}
+    drawn = {plate: marks(frame, plate, run.job) for plate in PLATES}
+    cell = assemble(frame, run.job, plan, drawn, channels)
+    (run.folder / "cad").mkdir()
+    write_cad(cell, run.folder / "cad", run.progress)
+    if run.job.output.freecad:
+        run.progress("cell.FCStd", 0.8)
+        run_freecad("document", run.folder)
+    run.progress("cad", 1.0)
+    return ()
+
+
+def run_freecad(command: str, folder: Path) -> None:
+    """Run one of our commands inside FreeCAD, in a process of its own.
+
+    Raises
+    ------
+    LceError
+        FreeCAD is missing, or the command failed; its own sentence and exit code are passed on.
+    """
+    program = shutil.which("freecadcmd") or shutil.which("FreeCADCmd")
+    if program is None:
+        msg = "freecadcmd is missing, so cad/cell.FCStd cannot be written; install FreeCAD or set output.freecad=false"
+        raise EnvironmentFault(msg)
+    call = [program, str(ROOT / "lce_workbench" / "batch.py"), "--", command, str(folder)]
+    done = subprocess.run(call, capture_output=True, text=True, check=False, env={**os.environ, "LC_ALL": "C.UTF-8"})
+    if done.returncode:
+        said = done.stderr.strip().splitlines() or [f"no message, exit code {done.returncode}"]
+        fault = LceError(f"FreeCAD could not write the document: {said[-1].removeprefix('lce: ')}")
+        fault.exit_code = done.returncode
+        raise fault
+
+
+STAGES: dict[str, Callable[[Run], Findings]] = {"design": run_design, "mask": run_mask, "cad": run_cad}
+"""The stages in the order of the work."""
+
+OUTPUTS = {"design": (), "mask": ("mask",), "cad": ("cad",)}
+"""What a stage writes anew in a kept folder."""
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir():
+        shutil.rmtree(path)
+
+
+def inputs(job: Job, base: Path) -> list[dict[str, Any]]:
+    """The files that the job names, with their digests."""
+    named = [name for name in (job.target.mesh, job.material.curve) if name]
+    return [{"path": name, **digest(base / name)} for name in named]
+
+
+def versions() -> dict[str, str]:
+    """What made the files."""
+    found = {"lce-molds": __version__, "python": platform.python_version()}
+    for package in ("numpy", "scipy", "trimesh", "ezdxf", "cadquery", "build123d"):
+        with suppress(PackageNotFoundError):
+            found[package] = version(package)
+    return found

@@ -1,0 +1,103 @@
+"""Job files: what is wrong is said in one sentence; what is right comes back the same."""
+
+from dataclasses import fields
+
+import pytest
+
+from lce_solver.errors import InputError
+from lce_workbench.core import jobfile
+from lce_workbench.core.job import Job
+
+FACE = '[target]\nsurface = "face"\n'
+
+BAD = {
+    "unknown section": (FACE + "[chanels]\n", "[chanels]; did you mean channels?"),
+    "unknown key": (FACE + "[sheet]\nwitdh_mm = 20\n", "sheet.witdh_mm; did you mean width_mm?"),
+    "wrong type": (FACE + '[sheet]\nwidth_mm = "wide"\n', "sheet.width_mm must be a number, not 'wide'"),
+    "boolean as a number": (FACE + "[sheet]\nwidth_mm = true\n", "sheet.width_mm must be a number"),
+    "fraction as a count": (FACE + "[solver]\nstarts = 1.5\n", "solver.starts must be a whole number"),
+    "section as a value": (FACE + "sheet = 3\n", "target.sheet"),
+    "lambda 0": (FACE + "[material]\nlambda = 0\nnu = 0.5\n", "material.lambda is 0; it must be greater than 0"),
+    "lambda negative": (FACE + "[material]\nlambda = -0.6\nnu = 0.5\n", "material.lambda is -0.6"),
+    "lambda without nu": (FACE + "[material]\nlambda = 0.6\n", "material.lambda and material.nu belong together"),
+    "material twice": (FACE + '[material]\npreset = "x"\nlambda = 0.6\nnu = 0.5\n', "the material is given twice"),
+    "curve alone": (FACE + '[material]\ncurve = "c.csv"\n', "material.temperature_C belong together"),
+    "gap 0": (FACE + "[sheet]\ngap_um = 0\n", "sheet.gap_um is 0 um; it must be greater than 0 um"),
+    "spacing 0": (FACE + "[channels]\nspacing_um = 0\n", "channels.spacing_um is 0 um"),
+    "not finite": (FACE + "[sheet]\nwidth_mm = nan\n", "sheet.width_mm is nan; give a finite number"),
+    "infinite": (FACE + "[sheet]\nwidth_mm = inf\n", "sheet.width_mm is inf"),
+    "domain larger than the sheet": (
+        FACE + "[domains]\nsize_um = 9000\n[sheet]\nwidth_mm = 5\n",
+        "is not smaller than",
+    ),
+    "domain smaller than a channel": (FACE + "[domains]\nsize_um = 3\n", "holds hardly a channel"),
+    "no target": ("[sheet]\nwidth_mm = 20\n", "give either target.mesh"),
+    "two targets": ('[target]\nsurface = "face"\nmesh = "a.stl"\n', "give either target.mesh"),
+    "unknown choice": ('[target]\nmesh = "a.stl"\nsubdivision = "cubic"\n', "choose one of loop, midpoint"),
+    "list of other things": (FACE + "[output]\nstep_domains = [1.5]\n", "each item is a whole number"),
+    "not TOML": ("[target\n", "is not valid TOML"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_a_bad_job_is_one_sentence_that_names_the_key(case):
+    text, words = BAD[case]
+    with pytest.raises(InputError) as fault:
+        jobfile.parse(text, "job.toml")
+    assert words in str(fault.value)
+    assert "\n" not in str(fault.value).removesuffix("\n")
+
+
+def test_lambda_one_has_no_director():
+    from lce_solver.types import Material
+
+    with pytest.raises(InputError, match="no director"):
+        Material(1.0, 0.5)
+    with pytest.raises(InputError, match="no director"):
+        Material(1.3, -1.0)
+
+
+def test_missing_and_unreadable_files_are_told(tmp_path):
+    with pytest.raises(InputError, match="does not exist"):
+        jobfile.load(tmp_path / "none.toml")
+    (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(InputError, match="not UTF-8 text"):
+        jobfile.load(tmp_path / "bytes.toml")
+    with pytest.raises(InputError, match="cannot be read"):
+        jobfile.load(tmp_path)
+
+
+def test_a_dumped_job_reads_back_the_same():
+    job = jobfile.parse(
+        FACE + '[sheet]\nwidth_mm = 12.345678901234567\n[output]\nstep_domains = [3, 1]\nmasks = ["gds"]\n'
+    )
+    assert jobfile.parse(jobfile.dump(job)) == job
+    assert jobfile.parse(jobfile.dump(job, comments=True)) == job
+
+
+def test_texts_survive_the_dump():
+    job = jobfile.parse('[target]\nmesh = "a \\"b\\" \\\\ \\t ü.stl"\n')
+    assert jobfile.parse(jobfile.dump(job)).target.mesh == 'a "b" \\ \t ü.stl'
+
+
+def test_settings_win_over_the_file():
+    job = jobfile.parse(FACE, settings=["sheet.gap_um=150", "target.surface=dome", 'output.masks=["gds"]'])
+    assert (job.sheet.gap_um, job.target.surface, job.output.masks) == (150.0, "dome", ("gds",))
+
+
+@pytest.mark.parametrize("setting", ["gap_um=3", "sheet.gap_um", "=3", "sheet.=3"])
+def test_a_malformed_setting_is_told(setting):
+    with pytest.raises(InputError, match="not of the form"):
+        jobfile.parse(FACE, settings=[setting])
+
+
+def test_every_parameter_is_declared_with_help_and_its_default_is_within_its_limits():
+    for part in fields(Job):
+        section = getattr(Job(), part.name)
+        for f in fields(section):
+            assert f.metadata["doc"]
+            value = getattr(section, f.name)
+            if value not in (None, "", ()):
+                plain = list(value) if isinstance(value, tuple) else value
+                parsed = jobfile.from_table({part.name: {jobfile.toml_name(f): plain}})
+                assert getattr(getattr(parsed, part.name), f.name) == value
