@@ -20,7 +20,7 @@ Embed = Callable[[Floats], Floats]
 Outline = Callable[[Floats], Floats]
 """(n,) curve parameters in [0, 1] to (n, 2) points, counter-clockwise around a convex region, closed."""
 
-SWEEPS = 80
+SWEEPS = 60
 STEP = 0.2
 MARGIN = 0.4
 """Distance that inner points keep from the rim, in units of the rim's edge there."""
@@ -40,11 +40,12 @@ def mesh(embed: Embed, outline: Outline, edge: float, corners: Sequence[float] =
     faces = _triangulate(uv)
     for _ in range(SWEEPS):
         moved = uv + STEP * _repulsion(uv, faces, embed(uv), edge)
-        uv = np.vstack([rim, _kept_inside(rim, moved[len(rim) :])])
+        uv = np.vstack([rim, _snapped(_kept_inside(rim, moved[len(rim) :]))])
         if (_signed_areas(uv, faces) <= 0).any():
             faces = _triangulate(uv)
-        faces = _flipped(uv, faces, embed(uv))
-    return Surface(embed(uv), faces)
+        faces = _flipped(uv, faces, embed(uv), passes=1)
+    points = embed(uv)
+    return Surface(points, _flipped(uv, faces, points, passes=100))
 
 
 def _outline_points(embed: Embed, outline: Outline, edge: float, corners: Sequence[float]) -> Floats:
@@ -55,8 +56,13 @@ def _outline_points(embed: Embed, outline: Outline, edge: float, corners: Sequen
         steps = np.linalg.norm(np.diff(embed(outline(t % 1.0)), axis=0), axis=1)
         length = np.concatenate([[0.0], np.cumsum(steps)])
         n = max(3, round(float(length[-1]) / edge))
-        parts.append(np.interp(np.arange(n) / n * length[-1], length, t))
+        parts.append(_snapped(np.interp(np.arange(n) / n * length[-1], length, t)))
     return outline(np.concatenate(parts) % 1.0)
+
+
+def _snapped(values: Floats) -> Floats:
+    """Values on a grid of 2**-24: the sweeps would amplify the last bit, in which versions of NumPy differ."""
+    return np.asarray(np.round(values * 2**24) / 2**24)
 
 
 def _inner_points(embed: Embed, rim: Floats, edge: float) -> Floats:
@@ -134,7 +140,7 @@ def _triangulate(uv: Floats) -> Ints:
     return np.asarray(faces[np.abs(area) > 1e-12 * np.ptp(uv, axis=0).prod()])
 
 
-def _flipped(uv: Floats, faces: Ints, points: Floats, passes: int = 20) -> Ints:
+def _flipped(uv: Floats, faces: Ints, points: Floats, passes: int) -> Ints:
     """Flip edges whose opposite angles on the surface sum to more than pi, worst first."""
     for _ in range(passes):
         pairs, _ = neighbours(faces)
