@@ -1,0 +1,78 @@
+"""The judge of a flattening. It shares no code with the solver: singular values come from an SVD, angles from no one."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lce_solver.types import Floats, Ints, Surface
+
+
+def jacobians(surface: Surface, uv: Floats) -> Floats:
+    """(n_f, 3, 2) derivative of the map sheet -> target on each triangle (the paper's J_f)."""
+    return _edges(surface.vertices, surface.faces) @ np.linalg.pinv(_edges(uv, surface.faces))
+
+
+def stretches(surface: Surface, uv: Floats, along: float, across: float) -> Floats:
+    """(n_f, 2) achieved stretch sheet -> target along and across the director.
+
+    The director is the principal direction whose stretch comes in the same order of size as ``along``.
+    """
+    large_first: Floats = np.linalg.svd(jacobians(surface, uv), compute_uv=False)
+    return large_first if along > across else large_first[:, ::-1]
+
+
+def stretch_errors(stretch: Floats, along: float, across: float) -> Floats:
+    """(n_f, 2) relative errors of the achieved stretches."""
+    errors: Floats = stretch / (along, across) - 1
+    return errors
+
+
+def rms(errors: Floats, area: Floats) -> float:
+    """Root of the area mean of both squared errors."""
+    return float(np.sqrt(np.average(np.mean(errors**2, axis=1), weights=area)))
+
+
+def flipped(uv: Floats, faces: Ints) -> Ints:
+    """(k,) triangles that are not counter-clockwise in the plane."""
+    return np.flatnonzero(~(np.linalg.det(_edges(uv, faces)) > 0))
+
+
+def crossings(uv: Floats, edges: Ints) -> Ints:
+    """(k, 2) pairs of segments, by their row in ``edges``, that meet without sharing an end.
+
+    Segments are sorted by their left end, so that only those that overlap in x are compared.
+    """
+    order = np.argsort(uv[edges, 0].min(axis=1), kind="stable")
+    first, second = _overlapping_in_x(uv[edges[order]])
+    first, second = order[first], order[second]
+    shared = (edges[first][:, :, None] == edges[second][:, None, :]).any(axis=(1, 2))
+    first, second = first[~shared], second[~shared]
+    meet = _separates(uv[edges[first]], uv[edges[second]]) & _separates(uv[edges[second]], uv[edges[first]])
+    pairs = np.stack([first[meet], second[meet]], axis=1)
+    return np.sort(pairs, axis=1)
+
+
+def _edges(points: Floats, faces: Ints) -> Floats:
+    """(n_f, d, 2) two edge vectors of each triangle, as columns."""
+    corner = points[faces]
+    return np.moveaxis(corner[:, 1:] - corner[:, :1], 1, 2)
+
+
+def _overlapping_in_x(segments: Floats) -> tuple[Ints, Ints]:
+    """Pairs of rows of (n, 2, 2) ``segments``, sorted by left end, whose bounding boxes touch."""
+    low, high = segments.min(axis=1), segments.max(axis=1)
+    n = len(segments)
+    count = np.searchsorted(low[:, 0], high[:, 0], side="right") - np.arange(n) - 1
+    first = np.repeat(np.arange(n), count)
+    second = first + 1 + np.arange(len(first)) - np.repeat(np.cumsum(count) - count, count)
+    touch = (low[first, 1] <= high[second, 1]) & (low[second, 1] <= high[first, 1])
+    return first[touch], second[touch]
+
+
+def _separates(line: Floats, points: Floats) -> Floats:
+    """Whether the line through (k, 2, 2) ``line`` has the ends of ``points`` on different sides, or one on it."""
+    direction = line[:, 1] - line[:, 0]
+    offset = points - line[:, :1]
+    side = direction[:, None, 0] * offset[..., 1] - direction[:, None, 1] * offset[..., 0]
+    separate: Floats = side.prod(axis=1) <= 0
+    return separate
