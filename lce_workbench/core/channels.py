@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from lce_solver.errors import InputError
 from lce_solver.types import Finding, Floats, Ints, Severity
-from lce_workbench.core.domains import Domains, Plate
+from lce_workbench.core.domains import Domains, Plate, signed_area
 from lce_workbench.core.job import ChannelSpec
 
 Bools = NDArray[np.bool_]
@@ -65,13 +65,13 @@ class Channels:
     @property
     def counts(self) -> Ints:
         """(n_d,) channels in each domain."""
-        return np.bincount(self.domain, minlength=len(self.angle))
+        counts: Ints = np.bincount(self.domain, minlength=len(self.angle))
+        return counts
 
     @property
     def areas(self) -> Floats:
         """(n_d,) exposed area of each domain [mm2]."""
-        lengths: Floats = np.bincount(self.domain, weights=self.length, minlength=len(self.angle))
-        return lengths * self.width
+        return np.asarray(np.bincount(self.domain, self.length * self.width, len(self.angle)), dtype=np.float64)
 
 
 def hatch(domains: Domains, plate: Plate, spec: ChannelSpec) -> Channels:
@@ -123,7 +123,7 @@ def blocks(channels: Channels, size: int = 8192) -> Iterator[slice]:
 
 
 def empty_domains(channels: Channels) -> tuple[Finding, ...]:
-    """Report the domains too small for one channel; they stay empty."""
+    """Report the domains too small for one channel (or folded); they stay empty."""
     empty = np.flatnonzero(channels.counts == 0)
     if not len(empty):
         return ()
@@ -176,15 +176,16 @@ def _strips(local: Floats, spec: ChannelSpec) -> tuple[Floats, Bools]:
 def _inset_extent(local: Floats, guard: float) -> tuple[Floats, Floats]:
     """Smallest and largest y of each triangle after its edges moved inwards; (0, -1) where nothing is left.
 
-    Moving the edges by g scales a triangle about its incentre by 1 - g/r, r the inradius.
+    Moving the edges by g scales a triangle about its incentre by 1 - g/r, r = 2 area / perimeter the inradius.
     """
     opposite = np.linalg.norm(np.roll(local, -1, axis=1) - np.roll(local, -2, axis=1), axis=2)
     perimeter = opposite.sum(axis=1)
     centre = np.sum(opposite * local[..., 1], axis=1) / perimeter
-    a, b = local[:, 1] - local[:, 0], local[:, 2] - local[:, 0]
-    scale = 1 - guard * perimeter / (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    inradius = 2 * signed_area(local) / perimeter
+    left = inradius > guard
+    scale = 1 - guard / np.where(left, inradius, np.inf)
     y = centre[:, None] + scale[:, None] * (local[..., 1] - centre[:, None])
-    return np.where(scale > 0, y.min(axis=1), 0.0), np.where(scale > 0, y.max(axis=1), -1.0)
+    return np.where(left, y.min(axis=1), 0.0), np.where(left, y.max(axis=1), -1.0)
 
 
 def _ends(local: Floats, y: Floats, spec: ChannelSpec) -> tuple[Floats, Floats]:

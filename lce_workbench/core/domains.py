@@ -7,9 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from lce_solver.errors import InputError, SolverError
 from lce_solver.types import Design, Floats, Ints, line_angle, owned
-from lce_workbench.core.job import Job
 
 Plate = Literal["bottom", "top"]
 
@@ -58,7 +56,7 @@ class Domains:
 
     @property
     def area(self) -> Floats:
-        """(n_d,) area of each domain [mm2]."""
+        """(n_d,) area of each domain, negative if the flat sheet is folded there [mm2]."""
         return signed_area(self.corners)
 
     def angle(self, plate: Plate) -> Floats:
@@ -86,35 +84,5 @@ def signed_area(polygons: Floats) -> Floats:
 
 
 def partition(design: Design) -> Domains:
-    """Cut the sheet into the design's own triangles; each keeps its director, which needs no average.
-
-    Raises
-    ------
-    SolverError
-        A triangle of the flat sheet is flipped or has no area, so its channels would cover its neighbours'.
-    """
-    faces = design.surface.faces
-    area = signed_area(design.uv[faces])
-    if np.any(bad := ~(area > 0)):
-        msg = (
-            f"{np.count_nonzero(bad)} triangles of the flat sheet are flipped or empty (first: {np.argmax(bad)}), "
-            "so domains would overlap; cut the target where it curves most, or raise solver.starts"
-        )
-        raise SolverError(msg)
-    return Domains(design.uv, faces, line_angle(design.theta), design.dtheta, design.stretch)
-
-
-def check_size(job: Job) -> None:
-    """Refuse domains that are not smaller than the sheet.
-
-    Raises
-    ------
-    InputError
-        ``domains.size_um`` reaches the sheet's width.
-    """
-    if job.domains.size >= job.sheet.width_mm:
-        msg = (
-            f"domains.size_um = {job.domains.size_um:g} is not smaller than the sheet "
-            f"(sheet.width_mm = {job.sheet.width_mm:g}); domains of 200 to 500 um are usual"
-        )
-        raise InputError(msg)
+    """Cut the sheet into the design's own triangles; each keeps its director, which needs no average."""
+    return Domains(design.uv, design.surface.faces, line_angle(design.theta), design.dtheta, design.stretch)

@@ -34,13 +34,14 @@ PIXEL = 14.0
 """Side of one dot of a letter [um]."""
 
 FONT = {
-    "B": ("####.", "#...#", "#...#", "####.", "#...#", "#...#", "####."),
-    "M": ("#...#", "##.##", "#.#.#", "#.#.#", "#...#", "#...#", "#...#"),
-    "O": (".###.", "#...#", "#...#", "#...#", "#...#", "#...#", ".###."),
-    "P": ("####.", "#...#", "#...#", "####.", "#....", "#....", "#...."),
+    "B": ("#.###", "#...#", "#...#", "#.###", "#...#", "#...#", "#.###"),
+    "M": ("#####", "#.#.#", "#.#.#", "#.#.#", "#.#.#", "#.#.#", "#.#.#"),
+    "O": ("##.##", "#...#", "#...#", "#...#", "#...#", "#...#", "##.##"),
+    "P": ("#.###", "#...#", "#...#", "#.###", "#....", "#....", "#...."),
     "T": ("#####", "..#..", "..#..", "..#..", "..#..", "..#..", "..#.."),
 }
-"""Letters of 5 x 7 dots, drawn as polygons because the writers take no text."""
+"""Letters of 5 x 7 dots, drawn as polygons because the writers take no text. Cut like stencils: no dots touch at a
+corner only and none enclose an island, so the recesses of a plate are simple outlines."""
 
 
 def box(x0: float, y0: float, x1: float, y1: float) -> Shape:
@@ -55,8 +56,7 @@ def join(*shapes: Shape) -> Shape:
 
 def moved(shape: Shape, x: float, y: float) -> Shape:
     """The shape shifted by (x, y) um."""
-    shifted: Shape = shape + np.array([x, y]) * UM
-    return shifted
+    return np.asarray(shape + np.array([x, y]) * UM)
 
 
 def turned(shape: Shape) -> Shape:
@@ -66,7 +66,7 @@ def turned(shape: Shape) -> Shape:
 
 def mirrored(shape: Shape) -> Shape:
     """The shape seen from the other side, x -> -x."""
-    return shape[:, ::-1] * np.array([-1.0, 1.0])
+    return np.asarray(shape[:, ::-1] * np.array([-1.0, 1.0]))
 
 
 def windows(spec: Marks) -> Shape:
@@ -109,7 +109,7 @@ def text(label: str) -> Shape:
 def _letter(letter: str, x: float) -> Shape:
     """One letter whose left side is ``x`` dots from the origin."""
     open_runs: dict[tuple[int, int], int] = {}
-    shapes = []
+    shapes: list[Shape] = []
     for row, dots in enumerate((*FONT[letter], "." * 5)):
         runs = _runs(dots)
         for run in [r for r in open_runs if r not in runs]:
@@ -164,12 +164,12 @@ MARKS: dict[str, Element] = {
 so its first label reads from above through the closed cell, its second on the loose plate's patterned face."""
 
 
-def polygons(plate: Plate, frame: Frame, spec: Marks) -> dict[str, Shape]:
+def marks(frame: Frame, plate: Plate, spec: Marks) -> dict[str, Shape]:
     """All marks of ``plate`` by layer: arrays (n, 4, 2) in sheet coordinates seen from above [mm]."""
-    layers: dict[str, list[Shape]] = {}
+    layers: dict[str, list[Shape]] = {"MARKS": [], "LABELS": []}
     for element in MARKS.values():
         draw = {"bottom": element.bottom, "top": element.top}[plate]
         if draw is not None:
             shape = moved(draw(spec), *element.at)
-            layers.setdefault(element.layer, []).extend(shape + frame.marks[i] for i in element.clusters)
+            layers[element.layer].extend(shape + frame.marks[i] for i in element.clusters)
     return {name: join(*shapes) for name, shapes in layers.items()}

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lce_solver.types import Floats
-from lce_workbench.core import marks
 from lce_workbench.core.channels import Channels, blocks, corners
 from lce_workbench.core.domains import Domains, Plate
 from lce_workbench.core.frame import Frame
 from lce_workbench.core.job import Job
+from lce_workbench.core.marks import marks
 from lce_workbench.core.units import NM
 
 Nanometres = NDArray[np.int32]
@@ -81,7 +81,7 @@ def compose(frame: Frame, domains: Domains, channels: Channels, job: Job) -> Mas
     """
     plate = channels.plate
     shapes = {
-        **marks.polygons(plate, frame, job.marks),
+        **marks(frame, plate, job.marks),
         "PLATE": frame.plate.ring[None],
         "DOMAINS": domains.corners,
         "SPACER": np.stack([strip.ring for strip in frame.strips]),

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
-from lce_solver.types import Floats
-from lce_workbench.core.channels import Channels
+from lce_solver.types import Floats, Ints
 from lce_workbench.core.domains import Domains
 
 DECIMALS = 6
 """Angles to a micro-degree, lengths to a nanometre."""
 
 
-def write(domains: Domains, bottom: Channels, top: Channels, path: Path) -> None:
+def write_table(domains: Domains, counts: Sequence[Ints], path: Path) -> None:
     """Write one row per domain: place, angles [degrees, lines in [0, 180)], stretches and channel counts.
+
+    Parameters
+    ----------
+    counts : (n_d,) channels in each domain, of the bottom and of the top plate.
 
     Raises
     ------
@@ -36,8 +40,8 @@ def write(domains: Domains, bottom: Channels, top: Channels, path: Path) -> None
         "written_bottom_deg": _line(domains.written("bottom")),
         "stretch_along": domains.stretch[:, 0],
         "stretch_across": domains.stretch[:, 1],
-        "channels_top": top.counts,
-        "channels_bottom": bottom.counts,
+        "channels_top": counts[1],
+        "channels_bottom": counts[0],
     }
     row = ",".join(FORMATS.get(name, f"%.{DECIMALS}f") for name in columns) + "\n"
     values = zip(*(column.tolist() for column in columns.values()), strict=True)
