@@ -13,18 +13,21 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from lce_solver.design import design
 from lce_solver.errors import EnvironmentFault, InputError, LceError, SolverError
 from lce_solver.types import Design, Finding, Progress, Severity, Status, silent
 from lce_workbench import ROOT, __version__
 from lce_workbench.core import jobfile, material, target
 from lce_workbench.core.cell import assemble
-from lce_workbench.core.channels import hatch
+from lce_workbench.core.channels import empty_domains, hatch
 from lce_workbench.core.domains import partition
 from lce_workbench.core.frame import arrange
 from lce_workbench.core.job import Job
 from lce_workbench.core.marks import marks
 from lce_workbench.core.mask import compose
+from lce_workbench.core.mask_checks import check
 from lce_workbench.export import EXPORTERS
 from lce_workbench.export.table import write_table
 from lce_workbench.outputs import (
@@ -155,8 +158,9 @@ def run_mask(run: Run) -> Findings:
     (run.folder / "mask").mkdir()
     found: list[Finding] = []
     for k, plate in enumerate(PLATES):
-        mask, findings = compose(frame, domains, hatch(domains, plate, run.job.channels), run.job)
-        found += findings
+        channels = hatch(domains, plate, run.job.channels)
+        mask = compose(frame, domains, channels, run.job)
+        found += (*empty_domains(channels), *check(mask, domains, channels, frame, run.job))
         for j, name in enumerate(run.job.output.masks):
             run.progress(f"mask {plate}.{name}", (k + j / len(run.job.output.masks)) / len(PLATES))
             EXPORTERS[name](mask, run.folder / "mask" / f"{plate}.{name}")
@@ -189,7 +193,7 @@ def run_cad(run: Run) -> Findings:
     plan = fabricable(read_design(run.folder / "design.npz"))
     domains, frame = partition(plan), arrange(plan.uv, run.job)
     channels = {plate: hatch(domains, plate, run.job.channels) for plate in PLATES}
-    drawn = {plate: marks(frame, plate, run.job) for plate in PLATES}
+    drawn = {plate: np.concatenate(list(marks(frame, plate, run.job.marks).values())) for plate in PLATES}
     cell = assemble(frame, run.job, plan, drawn, channels)
     (run.folder / "cad").mkdir()
     write_cad(cell, run.folder / "cad", run.progress)

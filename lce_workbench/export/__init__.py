@@ -1,1 +1,15 @@
-"""How masks and tables leave: one file per format, one visible table."""
+"""Files of a mask. A new format is one module with ``write(mask, path)`` and one line here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from lce_workbench.core.mask import Mask
+from lce_workbench.export import dxf, gdsii
+
+EXPORTERS: dict[str, Callable[[Mask, Path], None]] = {
+    "gds": gdsii.write,
+    "dxf": dxf.write,
+}
+"""Writer of each format, by file name extension; `OSError` if the file cannot be written."""

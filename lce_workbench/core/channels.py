@@ -1,0 +1,203 @@
+r"""Channels in closed form: in each domain, strips along the director, cut to the longest rectangles that fit.
+
+::
+
+            /\
+           /==\        a strip is `width` wide and repeats at `pitch` across the director;
+          /====\       its rectangle keeps `guard` away from every edge of the domain
+         /======\
+        /========\
+
+A strip's half-planes: with x along the director, y across, an edge of outward normal n and offset c bounds the strip's
+rectangle by n_x x <= c - guard - n_y y - |n_y| width / 2. So both ends are the tightest of a few affine functions of y,
+for any convex domain, without clipping.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lce_solver.errors import InputError
+from lce_solver.types import Finding, Floats, Ints, Severity
+from lce_workbench.core.domains import Domains, Plate, signed_area
+from lce_workbench.core.job import ChannelSpec
+
+Bools = NDArray[np.bool_]
+
+STEPS_PER_MM = 10_000
+"""Lengths are whole multiples of 0.1 um, so that every format holds the same geometry."""
+
+MIN_LENGTH = 0.002
+"""Shorter channels are left out [mm]."""
+
+BLOCK = 64
+"""Domains treated at once: what they need stays in the processor's cache."""
+
+PARALLEL = 1e-9
+"""An edge whose normal has a smaller component along the director runs along the channels and bounds none of them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Channels:
+    """All channels of one plate, in sheet coordinates seen from above (never mirrored)."""
+
+    plate: Plate
+    centre: Floats
+    """(n, 2) middle of each channel [mm]."""
+    angle: Floats
+    """(n_d,) direction of the channels of each domain, in [0, pi) [rad]."""
+    length: Floats
+    """(n,) a multiple of 1e-4 [mm]."""
+    domain: Ints
+    """(n,) domain of each channel, ascending; inside a domain the channels follow each other across the director."""
+    width: float
+    """[mm]"""
+    depth: float
+    """[mm]"""
+
+    def __len__(self) -> int:
+        return len(self.length)
+
+    @property
+    def counts(self) -> Ints:
+        """(n_d,) channels in each domain."""
+        counts: Ints = np.bincount(self.domain, minlength=len(self.angle))
+        return counts
+
+    @property
+    def areas(self) -> Floats:
+        """(n_d,) exposed area of each domain [mm2]."""
+        return np.asarray(np.bincount(self.domain, self.length * self.width, len(self.angle)), dtype=np.float64)
+
+
+def hatch(domains: Domains, plate: Plate, spec: ChannelSpec) -> Channels:
+    """Fill every domain with channels along its director on ``plate`` (paper, methods: 1 um wide, 2 um pitch).
+
+    Raises
+    ------
+    InputError
+        No domain is large enough for a single channel.
+    """
+    triangles, angle = domains.corners, domains.angle(plate)
+    starts = range(0, len(domains), BLOCK)
+    parts = [_fill(triangles[i : i + BLOCK], angle[i : i + BLOCK], spec) for i in starts]
+    centre = np.concatenate([p[0] for p in parts])
+    if not len(centre):
+        msg = (
+            f"channels.width_um = {spec.width_um:g} with guard_um = {spec.guard_um:g} fits into none of the domains; "
+            "make the channels narrower or domains.size_um larger"
+        )
+        raise InputError(msg)
+    length = np.concatenate([p[1] for p in parts])
+    domain = np.concatenate([p[2] + i for p, i in zip(parts, starts, strict=True)])
+    return Channels(plate, centre, angle, length, domain, spec.width, spec.depth)
+
+
+def corners(channels: Channels, rows: slice = slice(None)) -> Floats:
+    """Corners (n, 4, 2) of the channels in ``rows``, counter-clockwise [mm]; the first edge runs along the channel."""
+    centre, angle = channels.centre[rows], channels.angle[channels.domain[rows]]
+    c, s = np.cos(angle), np.sin(angle)
+    half, side = channels.length[rows] / 2, channels.width / 2
+    polygons = np.empty((len(centre), 4, 2))
+    for i, (along, across) in enumerate(((-1, -1), (1, -1), (1, 1), (-1, 1))):  # by component: twice as fast
+        polygons[:, i, 0] = centre[:, 0] + along * half * c - across * side * s
+        polygons[:, i, 1] = centre[:, 1] + along * half * s + across * side * c
+    return polygons
+
+
+def blocks(channels: Channels, size: int = 8192) -> Iterator[slice]:
+    """Rows of the channels in runs of about ``size`` that never split a domain."""
+    start, n = 0, len(channels)
+    while start < n:
+        stop = n
+        if start + size < n:
+            stop = int(np.searchsorted(channels.domain, channels.domain[start + size]))
+            if stop <= start:  # one domain larger than a block
+                stop = int(np.searchsorted(channels.domain, channels.domain[start], side="right"))
+        yield slice(start, stop)
+        start = stop
+
+
+def empty_domains(channels: Channels) -> tuple[Finding, ...]:
+    """Report the domains too small for one channel (or folded); they stay empty."""
+    empty = np.flatnonzero(channels.counts == 0)
+    if not len(empty):
+        return ()
+    shown = ", ".join(map(str, empty[:20])) + (" and more" if len(empty) > 20 else "")
+    return (
+        Finding(
+            "empty_domains",
+            Severity.WARNING,
+            f"{len(empty)} domains of the {channels.plate} plate are too small for one channel and stay empty; "
+            f"their rows of domains.csv have channels_{channels.plate} = 0",
+            value=float(len(empty)),
+            limit=0.0,
+            where=f"domain {shown}",
+        ),
+    )
+
+
+def _fill(triangles: Floats, angle: Floats, spec: ChannelSpec) -> tuple[Floats, Floats, Ints]:
+    """Centres, lengths and domains of the channels of a block of domains (m, 3, 2).
+
+    Every domain gets as many strips as the tallest needs; those outside their domain go.
+    """
+    origin = triangles.mean(axis=1)  # local coordinates, so that no digits are lost at the sheet's rim
+    local = _turn(triangles - origin[:, None], -angle[:, None])
+    y, inside = _strips(local, spec)
+    left, right = _ends(local, y, spec)
+    steps = np.floor((right - left) * STEPS_PER_MM)
+    domain, strip = np.nonzero(inside & (steps >= MIN_LENGTH * STEPS_PER_MM))
+    pick = domain, strip
+    middle = np.stack([(left[pick] + right[pick]) / 2, y[pick]], axis=1)
+    return _turn(middle, angle[domain]) + origin[domain], steps[pick] / STEPS_PER_MM, domain
+
+
+def _turn(points: Floats, angle: Floats) -> Floats:
+    """Rotate points (..., 2) counter-clockwise."""
+    c, s = np.cos(angle), np.sin(angle)
+    x, y = points[..., 0], points[..., 1]
+    return np.stack([c * x - s * y, s * x + c * y], axis=-1)
+
+
+def _strips(local: Floats, spec: ChannelSpec) -> tuple[Floats, Bools]:
+    """Mid-lines y (m, k) of strips, centred in each inset triangle of (m, 3, 2), and which of them it holds (m, k)."""
+    low, high = _inset_extent(local, spec.guard)
+    count = np.floor((high - low - spec.width) / spec.pitch) + 1
+    k = np.arange(max(count.max(), 0))
+    first = (low + high - (count - 1) * spec.pitch) / 2
+    return first[:, None] + k * spec.pitch, k < count[:, None]
+
+
+def _inset_extent(local: Floats, guard: float) -> tuple[Floats, Floats]:
+    """Smallest and largest y of each triangle after its edges moved inwards; (0, -1) where nothing is left.
+
+    Moving the edges by g scales a triangle about its incentre by 1 - g/r, r = 2 area / perimeter the inradius.
+    """
+    opposite = np.linalg.norm(np.roll(local, -1, axis=1) - np.roll(local, -2, axis=1), axis=2)
+    perimeter = opposite.sum(axis=1)
+    centre = np.sum(opposite * local[..., 1], axis=1) / perimeter
+    inradius = 2 * signed_area(local) / perimeter
+    left = inradius > guard
+    scale = 1 - guard / np.where(left, inradius, np.inf)
+    y = centre[:, None] + scale[:, None] * (local[..., 1] - centre[:, None])
+    return np.where(left, y.min(axis=1), 0.0), np.where(left, y.max(axis=1), -1.0)
+
+
+def _ends(local: Floats, y: Floats, spec: ChannelSpec) -> tuple[Floats, Floats]:
+    """Both ends x (m, k) of the longest rectangle about each mid-line y (m, k); see the head of this file."""
+    edge = np.roll(local, -1, axis=1) - local
+    normal = np.stack([edge[..., 1], -edge[..., 0]], axis=2) / np.linalg.norm(edge, axis=2)[..., None]
+    room = np.sum(normal * local, axis=2) - spec.guard - np.abs(normal[..., 1]) * spec.width / 2
+    n_x = normal[..., 0]
+    safe = np.where(np.abs(n_x) > PARALLEL, n_x, 1.0)
+    offset, slope = room / safe, -normal[..., 1] / safe
+    ends = []
+    for bounds, far, tightest in ((n_x < -PARALLEL, -np.inf, np.maximum), (n_x > PARALLEL, np.inf, np.minimum)):
+        a, b = np.where(bounds, offset, far), np.where(bounds, slope, 0.0)
+        ends.append(tightest.reduce([a[:, i, None] + b[:, i, None] * y for i in range(local.shape[1])]))
+    return ends[0], ends[1]

@@ -1,0 +1,284 @@
+"""Checks of a mask on the integers that are written, against the design it was made from.
+
+Every check is closed-form and reports what it measured, good or bad. The channel checks run over blocks of channels, so
+their memory does not grow with the plate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lce_solver.types import Finding, Floats, Ints, Severity
+from lce_workbench.core.channels import MIN_LENGTH, Channels, blocks
+from lce_workbench.core.domains import Domains, Plate
+from lce_workbench.core.frame import Frame
+from lce_workbench.core.job import ChannelSpec, Job
+from lce_workbench.core.mask import EXPOSED, Mask, Nanometres, flipped, written
+from lce_workbench.core.units import NM
+
+ROUNDING = 2.0
+"""What rounding two corners to the 1 nm grid can change in a distance, 2 x sqrt(1/2), rounded up [nm]."""
+
+MAX_ANGLE = 1e-3
+"""Largest accepted error of a domain's written direction [degrees]."""
+
+FULL_WEIGHT = 1e6
+"""A domain with less channel than this counts in proportion: 1 nm turns a single short channel visibly [nm]."""
+
+MAX_REACH = 1e8
+"""Half the side of the largest plate the writer takes, 200 mm [nm]."""
+
+AREA_LOSS = 0.04
+"""Largest fraction of the channel area that guards and square ends may cost."""
+
+
+Points = NDArray[np.complex128]
+"""Points of the plane as x + i y [nm]: the product of conj(a) and b holds their scalar and vector products."""
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """Channels of whole domains."""
+
+    written: Points
+    """(4, n) corners on the master."""
+    seen: Points
+    """(4, n) the same corners in sheet coordinates seen from above."""
+    domain: Ints
+    """(n,) domain of each channel."""
+    domains: Domains
+    plate: Plate
+    spec: ChannelSpec
+
+
+Measured = tuple[Floats, Ints]
+"""Measured values and the domain of each."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """A quantity with its limit."""
+
+    measure: Callable[[Block], Measured]
+    limit: Callable[[ChannelSpec], float]
+    at_least: bool
+    """Whether the limit is a lower one."""
+    unit: str
+    quantity: str
+
+
+def width_error(block: Block) -> Measured:
+    """Largest deviation of each channel's width, at both its ends [nm]."""
+    p = block.seen
+    along = p[1] - p[0]
+    ends = np.stack([_cross(along, p[2] - p[0]), _cross(along, p[3] - p[0])]) / np.abs(along)
+    return np.abs(ends - block.spec.width / NM).max(axis=0), block.domain
+
+
+def length(block: Block) -> Measured:
+    """Length of each channel's shorter side [nm]."""
+    p = block.seen
+    return np.minimum(np.abs(p[1] - p[0]), np.abs(p[2] - p[3])), block.domain
+
+
+def spacing(block: Block) -> Measured:
+    """Land between neighbours of one domain, where they face each other [nm]."""
+    same = block.domain[1:] == block.domain[:-1]
+    lower, upper = block.seen[2:, :-1][:, same], block.seen[:2, 1:][:, same]
+    end = np.abs(lower[0] - lower[1])
+    a, b = (upper - lower[1]) * np.conj((lower[0] - lower[1]) / end)  # real: along the lower one, imaginary: across
+    first, last = np.maximum(a.real, 0.0), np.minimum(b.real, end)
+    slope = (b.imag - a.imag) / (b.real - a.real)
+    gap = a.imag + np.minimum(slope * (first - a.real), slope * (last - a.real))
+    return np.where(first < last, gap, np.inf), block.domain[1:][same]
+
+
+def inset(block: Block) -> Measured:
+    """Distance of each channel from the nearest edge of its domain, negative outside [nm]."""
+    first = int(block.domain[0])
+    corners = _points(block.domains.corners[first : int(block.domain[-1]) + 1] / NM).T
+    local = block.domain - first
+    nearest = np.full(len(local), np.inf)
+    for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        along = (end - start) / np.abs(end - start)
+        offset, x, y = _cross(along, start)[local], along.real[local], along.imag[local]
+        for corner in block.seen:
+            np.minimum(nearest, x * corner.imag - y * corner.real - offset, out=nearest)
+    return nearest, block.domain
+
+
+def angle_error(block: Block) -> Measured:
+    """Error of each domain's direction on the master, length-weighted as a line field [degrees]."""
+    p = block.written
+    along = (p[1] - p[0] + p[2] - p[3]) / 2
+    size = np.abs(along)
+    domain, starts = np.unique(block.domain, return_index=True)
+    mean = np.add.reduceat(along**2 / size, starts)
+    error = np.angle(mean * np.exp(-2j * block.domains.written(block.plate)[domain])) / 2
+    weight = np.minimum(np.add.reduceat(size, starts) / FULL_WEIGHT, 1.0)
+    return np.degrees(np.abs(error)) * weight, domain
+
+
+CHANNEL_CHECKS: dict[str, Check] = {
+    "channel_width": Check(width_error, lambda _: ROUNDING, False, "nm", "largest error of a channel's width"),
+    "channel_length": Check(length, lambda _: MIN_LENGTH / NM - ROUNDING, True, "nm", "shortest channel"),
+    "channel_spacing": Check(
+        spacing, lambda spec: (spec.pitch - spec.width) / NM - ROUNDING, True, "nm", "narrowest land inside a domain"
+    ),
+    "channel_inset": Check(
+        inset, lambda spec: spec.guard / NM - ROUNDING, True, "nm", "smallest distance from a channel to its border"
+    ),
+    "channel_angle": Check(angle_error, lambda _: MAX_ANGLE, False, "deg", "largest error of a domain's direction"),
+}
+"""Measured on every channel. Lands between channels of different domains are at least two insets wide."""
+
+
+def check(mask: Mask, domains: Domains, channels: Channels, frame: Frame, job: Job) -> tuple[Finding, ...]:
+    """Measure a mask; a finding is an error where it leaves its limit.
+
+    Parameters
+    ----------
+    channels : what ``CHANNELS`` was made of; only the domain of each channel is used.
+    """
+    return (
+        *_channel_findings(mask, domains, channels, job.channels),
+        _area(mask, domains, job.channels),
+        *_polygon_findings(mask),
+        _border(mask, domains),
+        *_mark_findings(mask, frame, job),
+        *_extent_findings(mask),
+    )
+
+
+def _channel_findings(mask: Mask, domains: Domains, channels: Channels, spec: ChannelSpec) -> Iterator[Finding]:
+    """The worst value of every channel check."""
+    worst: dict[str, tuple[float, int]] = {}
+    for rows in blocks(channels):
+        corners = np.ascontiguousarray(_points(mask.channels[rows]).T)
+        seen = -np.conj(corners[::-1]) if mask.plate == "top" else corners
+        block = Block(corners, seen, channels.domain[rows], domains, mask.plate, spec)
+        for name, item in CHANNEL_CHECKS.items():
+            values, domain = item.measure(block)
+            if len(values):
+                i = int(np.argmin(values) if item.at_least else np.argmax(values))
+                found = float(values[i]), int(domain[i])
+                worst[name] = (min if item.at_least else max)(worst.get(name, found), found)
+    for name, (value, place) in worst.items():
+        item = CHANNEL_CHECKS[name]
+        measured = Measurement(value, item.limit(spec), item.at_least, item.unit, f"domain {place}")
+        yield _judged(mask, name, item.quantity, measured)
+
+
+def _area(mask: Mask, domains: Domains, spec: ChannelSpec) -> Finding:
+    """Channel area, from the integers, as a fraction of sheet area x duty."""
+    corners = (_points(part) for part in _parts(mask.channels))
+    exposed = sum(float(_cross(p[:, 2] - p[:, 0], p[:, 3] - p[:, 1]).sum()) / 2 for p in corners)
+    ratio = exposed * NM**2 / (float(np.abs(domains.area).sum()) * spec.duty)
+    text = "channel area / (sheet area x duty)"
+    return _judged(mask, "channel_area", text, Measurement(ratio, 1 - AREA_LOSS, True), Severity.WARNING)
+
+
+def _polygon_findings(mask: Mask) -> Iterator[Finding]:
+    """Convexity and edge length of every polygon of every layer."""
+    turn, edge = (np.inf, ""), (np.inf, "")
+    for name, groups in mask.layers.items():
+        for part in (part for group in groups for part in _parts(group)):
+            corners = np.ascontiguousarray(_points(part).T)
+            side = np.roll(corners, -1, axis=0) - corners
+            turn = min(turn, (float(_cross(side, np.roll(side, -1, axis=0)).min()), name))
+            edge = min(edge, (float(np.abs(side).min()), name))
+    text = "smallest turn at a corner (positive: convex, counter-clockwise)"
+    yield _judged(mask, "polygon_convex", text, Measurement(turn[0], 1.0, True, "nm2", turn[1]))
+    yield _judged(mask, "polygon_edge", "shortest edge of a polygon", Measurement(edge[0], 1.0, True, "nm", edge[1]))
+
+
+def _border(mask: Mask, domains: Domains) -> Finding:
+    """Domain borders, mirrored back on the top plate, against the design."""
+    (group,) = mask.layers["DOMAINS"]
+    seen = flipped(group) if mask.plate == "top" else group
+    error = np.abs(seen - domains.corners / NM).max(axis=(1, 2))
+    worst = int(error.argmax())
+    text = "largest distance of a written domain corner from the design"
+    return _judged(mask, "domain_border", text, Measurement(float(error[worst]), 1.0, False, "nm", f"domain {worst}"))
+
+
+def _mark_findings(mask: Mask, frame: Frame, job: Job) -> Iterator[Finding]:
+    """Marks and labels stay clear of the sheet, of the spacer and of each other."""
+    marks = np.concatenate([_boxes(group) for name in ("MARKS", "LABELS") for group in mask.layers[name]])
+    sheet = _boxes(written(frame.sheet.ring[None], mask.plate))
+    spacer = np.concatenate([_boxes(group) for group in mask.layers["SPACER"]])
+    each_other = _gaps(marks, marks)
+    np.fill_diagonal(each_other, np.inf)
+    for name, text, gaps, least in (
+        ("marks_sheet", "clearance from the sheet to the marks", _gaps(marks, sheet), job.marks.clearance_mm / NM),
+        ("marks_spacer", "clearance from the marks to the spacer", _gaps(marks, spacer), job.spacer.clearance_mm / NM),
+        ("marks_disjoint", "smallest gap between two polygons of marks and labels", each_other, ROUNDING),
+    ):
+        yield _judged(mask, name, text, Measurement(float(gaps.min()), least - ROUNDING, True, "nm"))
+
+
+def _extent_findings(mask: Mask) -> Iterator[Finding]:
+    """Everything lies on the writer's largest plate, and what is exposed lies on this one."""
+    reach = max(int(np.abs(group).max()) for groups in mask.layers.values() for group in groups)
+    yield _judged(mask, "extent", "largest coordinate", Measurement(float(reach), MAX_REACH, False, "nm"))
+    x0, y0, x1, y1 = _boxes(mask.layers["PLATE"][0])[0]
+    inside = []
+    for group in (group for name in EXPOSED for group in mask.layers[name]):
+        (low_x, low_y), (high_x, high_y) = group.min(axis=(0, 1)), group.max(axis=(0, 1))
+        inside += [low_x - x0, low_y - y0, x1 - high_x, y1 - high_y]
+    text = "smallest distance from what is exposed to the plate's edge"
+    yield _judged(mask, "plate_margin", text, Measurement(float(min(inside)), 0.0, True, "nm"))
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """A value beside its limit."""
+
+    value: float
+    limit: float
+    at_least: bool
+    unit: str = ""
+    place: str = ""
+
+
+def _judged(mask: Mask, name: str, quantity: str, found: Measurement, severity: Severity = Severity.ERROR) -> Finding:
+    """A finding of ``severity`` if the value leaves its limit, else an information."""
+    good = found.value >= found.limit if found.at_least else found.value <= found.limit
+    bound = "at least" if found.at_least else "at most"
+    where = f"{mask.plate} plate" + (f", {found.place}" if found.place else "")
+    text = f"{quantity} is {found.value:.6g} {found.unit}".rstrip() + f" ({bound} {found.limit:.6g}; {where})"
+    return Finding(name, Severity.INFO if good else severity, text, found.value, found.limit, found.unit, where)
+
+
+def _parts(polygons: Nanometres, size: int = 8192) -> Iterator[Nanometres]:
+    """The polygons in runs."""
+    return (polygons[start : start + size] for start in range(0, len(polygons), size))
+
+
+def _points(polygons: Nanometres | Floats) -> Points:
+    """Corners (n, k, 2) as complex numbers (n, k)."""
+    points: Points = np.ascontiguousarray(polygons, dtype=np.float64).view(np.complex128)[..., 0]
+    return points
+
+
+def _cross(a: Points, b: Points) -> Floats:
+    """Vector product of a and b: positive if b points to the left of a."""
+    product: Floats = a.real * b.imag - a.imag * b.real
+    return product
+
+
+def _boxes(polygons: Nanometres) -> Floats:
+    """Bounding boxes (n, 4): low x, low y, high x, high y."""
+    return np.concatenate([polygons.min(axis=1), polygons.max(axis=1)], axis=1).astype(np.float64)
+
+
+def _gaps(a: Floats, b: Floats) -> Floats:
+    """(n, m) gap between boxes along the axis where it is largest; negative if they overlap."""
+    low = np.maximum(a[:, None, :2], b[None, :, :2])
+    high = np.minimum(a[:, None, 2:], b[None, :, 2:])
+    gaps: Floats = (low - high).max(axis=2)
+    return gaps
