@@ -31,9 +31,15 @@ fi
 
 git clone --quiet --no-hardlinks "$root" "$folder/root/lce-molds"
 cp -L /etc/resolv.conf /etc/hosts "$folder/etc/"
-for file in /etc/pip.conf /etc/apt/apt.conf.d/99* /etc/ssl/certs/ca-certificates.crt; do
-    [ ! -e "$file" ] || { mkdir -p "$folder$(dirname "$file")" && cp -L "$file" "$folder$file"; }
+for file in /etc/pip.conf /etc/apt/apt.conf.d/99*; do
+    [ ! -e "$file" ] || cp -L "$file" "$folder$file"
 done
+certificates=${PIP_CERT:-${SSL_CERT_FILE:-/etc/ssl/certs/ca-certificates.crt}}
+if [ -e "$certificates" ]; then
+    # Not in Debian's place for them, which its package writes anew.
+    cp -L "$certificates" "$folder/etc/certificates.crt"
+    export PIP_CERT=/etc/certificates.crt SSL_CERT_FILE=/etc/certificates.crt REQUESTS_CA_BUNDLE=/etc/certificates.crt
+fi
 mount -t proc proc "$folder/proc"
 mount --rbind /dev "$folder/dev"
 
