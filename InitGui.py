@@ -1,0 +1,4 @@
+import FreeCADGui
+from lce_workbench.gui.workbench import LceWorkbench
+
+FreeCADGui.addWorkbench(LceWorkbench())
