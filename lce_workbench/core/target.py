@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from lce_solver.errors import InputError
-from lce_solver.metric import flatten
+from lce_solver.metric import Stop, flatten, lay_flat
 from lce_solver.surface import load, mean_edge, subdivide
 from lce_solver.surfaces import SURFACES
 from lce_solver.types import Design, Finding, Floats, Ints, Material, Severity, Surface
@@ -58,7 +58,7 @@ def _meshed(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Fi
 
 def flat_edge(surface: Surface, job: Job, material: Material) -> float:
     """Mean edge on the flat sheet [mm] that these triangles would have, from one quick flattening."""
-    uv = flatten(surface, (material.along, material.across), angle=0.0, tolerance=1e-3).uv
+    uv = flatten(lay_flat(surface), (material.along, material.across), 0.0, Stop(1e-3)).uv
     return job.sheet.width_mm * _mean_length(uv, surface.faces) / float(np.ptp(uv, axis=0).max())
 
 

@@ -1,0 +1,232 @@
+"""One job through the whole pipeline, from the shell and inside FreeCAD."""
+
+import csv
+import hashlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lce_workbench import ROOT
+from lce_workbench.cli import main
+from lce_workbench.outputs import read_design
+
+JOB = """
+[target]
+surface = "saddle"
+[sheet]
+width_mm = 3.0
+[domains]
+size_um = 300.0
+"""
+
+CONTRACT = [
+    "cad/bottom_plate.step", "cad/cell.FCStd", "cad/cell.glb", "cad/cell.step", "cad/channels_bottom.step",
+    "cad/channels_top.step", "cad/spacer.step", "cad/top_plate.step", "design.npz", "domains.csv", "job.toml",
+    "manifest.json", "mask/bottom.dxf", "mask/bottom.gds", "mask/top.dxf", "mask/top.gds",
+]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def job(tmp_path_factory):
+    path = tmp_path_factory.mktemp("a job") / "saddle job.toml"
+    path.write_text(JOB)
+    return path
+
+
+@pytest.fixture(scope="module")
+def built(job):
+    assert main(["build", str(job), "--quiet"]) == 0
+    return job.parent / "out" / "saddle job"
+
+
+def digests(folder):
+    files = (p for p in folder.rglob("*") if p.is_file() and p.name != "manifest.json")
+    return {p.relative_to(folder).as_posix(): hashlib.sha256(p.read_bytes()).hexdigest() for p in files}
+
+
+def rows(folder):
+    with (folder / "domains.csv").open() as file:
+        return list(csv.DictReader(file))
+
+
+def test_a_build_writes_the_files_of_the_contract_and_nothing_else(built):
+    assert sorted(p.relative_to(built).as_posix() for p in built.rglob("*") if p.is_file()) == CONTRACT
+    assert [p.name for p in built.parent.iterdir()] == [built.name]
+
+
+def test_the_manifest_tells_the_truth(built):
+    manifest = json.loads((built / "manifest.json").read_text())
+    assert {f["path"]: f["sha256"] for f in manifest["files"]} == digests(built)
+    assert manifest["exit_code"] == 0
+    assert manifest["stages"] == ["design", "mask", "cad"]
+    assert any(f["check"] == "material_estimate" for f in manifest["findings"])
+
+
+def test_the_same_job_gives_the_same_bytes(built, job, tmp_path):
+    assert main(["build", str(job), "--quiet", "--out", str(tmp_path / "again")]) == 0
+    assert digests(tmp_path / "again") == digests(built)
+
+
+def test_freecad_gives_the_same_bytes_as_the_shell(built, job, tmp_path):
+    batch = ROOT / "lce_workbench" / "batch.py"
+    done = subprocess.run(
+        ["freecadcmd", str(batch), "--", "build", str(job), "--out", str(tmp_path / "in freecad")],
+        capture_output=True, text=True, check=False, env={**os.environ, "LC_ALL": "C.UTF-8"}, cwd=tmp_path,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert digests(tmp_path / "in freecad") == digests(built)
+
+
+def test_the_stages_alone_equal_the_build(built, job, tmp_path):
+    out = tmp_path / "staged"
+    assert main(["design", str(job), "--quiet", "--out", str(out)]) == 0
+    assert sorted(p.name for p in out.iterdir()) == ["design.npz", "domains.csv", "job.toml", "manifest.json"]
+    assert main(["mask", str(out), "--quiet"]) == 0
+    assert main(["cad", str(out), "--quiet"]) == 0
+    assert digests(out) == digests(built)
+
+
+def test_the_resolved_job_builds_again(built, tmp_path):
+    assert main(["design", str(built / "job.toml"), "--quiet", "--out", str(tmp_path / "again")]) == 0
+    assert (tmp_path / "again" / "design.npz").read_bytes() == (built / "design.npz").read_bytes()
+
+
+def test_the_table_is_the_design_in_degrees(built):
+    plan, table = read_design(built / "design.npz"), rows(built)
+    column = {key: np.array([float(row[key]) for row in table]) for key in table[0]}
+
+    def apart(a, b):
+        return np.abs((a - b + 90) % 180 - 90).max()
+
+    theta, dtheta = np.degrees(plan.theta), np.degrees(plan.dtheta)
+    assert apart(column["theta_deg"], theta) < 1e-5
+    assert np.abs(column["dtheta_deg"] - dtheta).max() < 1e-5
+    assert apart(column["theta_top_deg"], theta + dtheta / 2) < 1e-5
+    assert apart(column["theta_bottom_deg"], theta - dtheta / 2) < 1e-5
+    assert apart(column["written_bottom_deg"], theta - dtheta / 2) < 1e-5
+    assert apart(column["written_top_deg"], 180 - (theta + dtheta / 2)) < 1e-5
+    angles = [key for key in column if key.endswith("_deg") and key != "dtheta_deg"]
+    assert all(((column[key] >= 0) & (column[key] < 180)).all() for key in angles)
+    assert np.ptp(plan.uv, axis=0).max() == pytest.approx(3.0, abs=1e-12)
+
+
+def test_npz_loads_without_pickle_and_has_the_contract_names(built):
+    with np.load(built / "design.npz", allow_pickle=False) as data:
+        names = {"vertices", "faces", "uv", "theta", "dtheta", "stretch", "lambda_", "nu", "thickness"}
+        assert names <= set(data.files)
+        assert float(data["thickness"]) == pytest.approx(0.1)
+
+
+def said(capsys, *argv):
+    """Run a command that fails; return its exit code and the one sentence."""
+    code = main([str(word) for word in argv])
+    lines = capsys.readouterr().err.strip().splitlines()
+    assert len(lines) == 1, lines
+    return code, lines[0]
+
+
+def test_faults_of_the_user_end_with_2_and_one_sentence(capsys, tmp_path, job):
+    def fails(*argv):
+        code, sentence = said(capsys, *argv)
+        assert code == 2
+        return sentence
+
+    assert "does not exist" in fails("build", tmp_path / "none.toml")
+    assert "did you mean" in fails("build", job, "--set", "sheet.widht_mm=3")
+    assert "must be a number" in fails("build", job, "--set", "sheet.width_mm=wide")
+    assert "no director" in fails("build", job, "--set", "material.lambda=1", "material.nu=0.5")
+    assert "unknown; shipped are" in fails("build", job, "--set", "target.surface=dune")
+    assert "format 'tiff' is unknown" in fails("build", job, '--set=output.masks=["tiff"]')
+    assert "too small" in fails("build", job, "--set", "plates.width_mm=2")
+    assert "not an output folder" in fails("mask", tmp_path)
+    assert "invalid choice" in fails("fold", job)
+    assert "required" in fails("build")
+    (tmp_path / "lost.toml").write_text('[target]\nmesh = "lost.stl"\n')
+    assert "lost.stl" in fails("build", tmp_path / "lost.toml")
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["lost.toml"]
+
+
+def test_an_unwritable_output_ends_with_4(capsys, tmp_path, job):
+    (tmp_path / "file").write_text("")
+    code, sentence = said(capsys, "build", job, "--out", tmp_path / "file" / "out")
+    assert code == 4
+    assert "cannot be written" in sentence
+
+
+def test_a_solver_that_is_stopped_early_says_so_and_ends_with_3(tmp_path, job):
+    out = tmp_path / "early"
+    assert main(["design", str(job), "--quiet", "--out", str(out), "--set", "solver.max_iterations=2"]) == 3
+    manifest = json.loads((out / "manifest.json").read_text())
+    assert manifest["exit_code"] == 3
+    assert any(f["check"] == "solver_status" and f["severity"] == "error" for f in manifest["findings"])
+
+
+def test_an_interrupted_build_leaves_nothing(job, tmp_path):
+    run = subprocess.Popen(
+        [sys.executable, "-m", "lce_workbench.cli", "build", str(job), "--json", "--out", str(tmp_path / "out"),
+         "--set", "domains.size_um=100"],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env={**os.environ, "PYTHONPATH": ":".join(sys.path)},
+    )  # fmt: skip
+    while '"flatten"' not in run.stdout.readline():
+        time.sleep(0.01)
+    run.send_signal(signal.SIGINT)
+    _, err = run.communicate(timeout=60)
+    assert run.returncode == 130
+    assert err.strip().splitlines()[-1] == "lce: interrupted; nothing was changed"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_progress_as_json_lines(capsys, job, tmp_path):
+    assert main(["design", str(job), "--json", "--out", str(tmp_path / "out")]) == 0
+    lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert all(0 <= line["fraction"] <= 1 for line in lines[:-1])
+    assert lines[-1]["exit_code"] == 0
+    assert lines[-1]["out"].endswith("out")
+
+
+def test_a_new_job_is_commented_and_builds(tmp_path, capsys):
+    import trimesh
+
+    trimesh.Trimesh(*grid()).export(tmp_path / "hill.stl")
+    assert main(["new", str(tmp_path / "hill.stl")]) == 0
+    text = (tmp_path / "hill.toml").read_text()
+    assert "# film thickness = spacer thickness" in text
+    assert main(["design", str(tmp_path / "hill.toml"), "--quiet", "--set", "sheet.width_mm=4"]) == 0
+    assert main(["new", str(tmp_path / "hill.stl")]) == 2
+    assert (tmp_path / "hill.toml").read_text() == text
+
+
+def grid(n=9):
+    """A shallow hill over a square."""
+    x, y = (axis.ravel() for axis in np.meshgrid(*[np.linspace(-1, 1, n)] * 2, indexing="ij"))
+    cell = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()
+    faces = np.concatenate([cell[:, None] + [0, n, n + 1], cell[:, None] + [0, n + 1, 1]])
+    return np.column_stack([x, y, 0.3 * np.exp(-(x**2) - y**2)]), faces
+
+
+def test_help_and_version_end_with_0(capsys):
+    for flag in ("--help", "--version"):
+        with pytest.raises(SystemExit) as end:
+            main([flag])
+        assert end.value.code == 0
+    assert "build" in capsys.readouterr().out
+
+
+def test_a_defect_of_ours_is_one_sentence_too(capsys, monkeypatch, job):
+    """The last net: whatever is raised, the user sees one sentence and no traceback."""
+
+    def broken(*_args):
+        raise ZeroDivisionError
+
+    monkeypatch.setattr("lce_workbench.pipeline.build", broken)
+    code, sentence = said(capsys, "build", job)
+    assert code == 4
+    assert "internal fault (ZeroDivisionError" in sentence
+    assert Path(job).exists()
