@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from lce_solver.face import face
 from lce_solver.mesher import mesh
 from lce_solver.types import Floats, Surface
 
@@ -120,5 +121,6 @@ SURFACES: dict[str, Callable[[float], Surface]] = {
     "leaf": leaf,
     "cone": cone,
     "sphere-zone": sphere_zone,
+    "face": face,
 }
 """Name in the job file -> surface with edges of the given mean length."""
