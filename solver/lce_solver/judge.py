@@ -10,8 +10,8 @@ from lce_solver.types import Floats, Ints, Material, Surface
 
 def jacobians(surface: Surface, uv: Floats) -> Floats:
     """(n_f, 3, 2) derivative of the map sheet -> target on each triangle (the paper's J_f)."""
-    jacobian: Floats = _edges(surface.vertices, surface.faces) @ np.linalg.pinv(_edges(uv, surface.faces))
-    return jacobian
+    inverse = np.linalg.pinv(_edges(uv, surface.faces))
+    return np.asarray(_edges(surface.vertices, surface.faces) @ inverse, dtype=np.float64)
 
 
 def stretches(surface: Surface, uv: Floats, material: Material) -> Floats:

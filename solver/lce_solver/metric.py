@@ -62,8 +62,8 @@ def flatten(
     rigid: Rigid,
     stretches: Stretches,
     angle: float,
-    *,
     stop: Stop = DEFAULT,
+    *,
     method: str = "lbfgs",
     tick: Tick = unheard,
 ) -> Flattening:
@@ -114,7 +114,7 @@ def compete(
     for k in range(starts):
         tick = partial(_report, progress, k / starts, 1 / starts, stop.max_iterations)
         angle = k * np.pi / starts
-        flat = flatten(rigid, (material.along, material.across), angle, stop=stop, tick=tick)
+        flat = flatten(rigid, (material.along, material.across), angle, stop, tick=tick)
         results.append((flat, _record(surface, flat, material, angle, bending)))
     progress("flatten", 1.0)
     return results[_best([start for _, start in results])][0], tuple(start for _, start in results)
