@@ -14,6 +14,8 @@ from lce_solver.types import Floats
 Complexes = NDArray[np.complex128]
 Function = Callable[[Complexes], tuple[float, Complexes]]
 """Value and gradient, the latter as d/dx + i d/dy."""
+Tick = Callable[[int], None]
+"""Called before each iteration with its number; it may raise to stop the work."""
 
 WINDOW = 10
 """Iterations over which the decrease is averaged: single steps of L-BFGS are uneven."""
@@ -40,6 +42,10 @@ class _Point:
     gradient: Complexes
 
 
+def unheard(iteration: int) -> None:
+    """The `Tick` that does nothing."""
+
+
 def minimise(
     function: Function,
     x: Complexes,
@@ -48,7 +54,7 @@ def minimise(
     memory: int,
     tolerance: float,
     max_iterations: int,
-    tick: Callable[[int], None],
+    tick: Tick,
 ) -> Minimum:
     """Descend from ``x`` until the relative decrease per iteration stays below ``tolerance``.
 
@@ -56,7 +62,6 @@ def minimise(
     ----------
     inverse : product with a positive inverse Hessian; with ``memory = 0`` the method is the plain step
         ``x - inverse(gradient)``.
-    tick : called before each iteration with its number; it may raise to stop.
     """
     point = _Point(x, *function(x))
     history = [point.value]

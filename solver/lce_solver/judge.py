@@ -1,29 +1,31 @@
-"""The judge of a flattening. It shares no code with the solver: singular values come from an SVD, angles from no one."""
+"""The judge of a flattening. It shares no code with the solver: singular values come from an SVD."""
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
-from lce_solver.types import Floats, Ints, Surface
+from lce_solver.types import Floats, Ints, Material, Surface
 
 
 def jacobians(surface: Surface, uv: Floats) -> Floats:
     """(n_f, 3, 2) derivative of the map sheet -> target on each triangle (the paper's J_f)."""
-    return _edges(surface.vertices, surface.faces) @ np.linalg.pinv(_edges(uv, surface.faces))
+    inverse = np.linalg.pinv(_edges(uv, surface.faces))
+    return np.asarray(_edges(surface.vertices, surface.faces) @ inverse, dtype=np.float64)
 
 
-def stretches(surface: Surface, uv: Floats, along: float, across: float) -> Floats:
+def stretches(surface: Surface, uv: Floats, material: Material) -> Floats:
     """(n_f, 2) achieved stretch sheet -> target along and across the director.
 
-    The director is the principal direction whose stretch comes in the same order of size as ``along``.
+    The director is the principal direction whose stretch comes in the same order of size as ``material.along``.
     """
     large_first: Floats = np.linalg.svd(jacobians(surface, uv), compute_uv=False)
-    return large_first if along > across else large_first[:, ::-1]
+    return large_first if material.along > material.across else large_first[:, ::-1]
 
 
-def stretch_errors(stretch: Floats, along: float, across: float) -> Floats:
-    """(n_f, 2) relative errors of the achieved stretches."""
-    errors: Floats = stretch / (along, across) - 1
+def stretch_errors(stretch: Floats, material: Material) -> Floats:
+    """(n_f, 2) relative errors of achieved stretches, along and across the director."""
+    errors: Floats = stretch / (material.along, material.across) - 1
     return errors
 
 
@@ -69,10 +71,10 @@ def _overlapping_in_x(segments: Floats) -> tuple[Ints, Ints]:
     return first[touch], second[touch]
 
 
-def _separates(line: Floats, points: Floats) -> Floats:
+def _separates(line: Floats, points: Floats) -> NDArray[np.bool_]:
     """Whether the line through (k, 2, 2) ``line`` has the ends of ``points`` on different sides, or one on it."""
     direction = line[:, 1] - line[:, 0]
     offset = points - line[:, :1]
     side = direction[:, None, 0] * offset[..., 1] - direction[:, None, 1] * offset[..., 0]
-    separate: Floats = side.prod(axis=1) <= 0
+    separate: NDArray[np.bool_] = side.prod(axis=1) <= 0
     return separate

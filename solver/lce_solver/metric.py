@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
 from lce_solver import judge
-from lce_solver.descent import Minimum, minimise
+from lce_solver.descent import Minimum, Tick, minimise, unheard
 from lce_solver.geometry import face_areas
 from lce_solver.plane import convex_map, long_side_along_x
 from lce_solver.topology import boundary_loops
 from lce_solver.twist import bending_left, bending_tensor, pull_back
-from lce_solver.types import Flattening, Floats, Ints, Progress, Start, Status, Surface, silent
+from lce_solver.types import Flattening, Floats, Ints, Material, Progress, Start, Status, Surface, silent
 from lce_solver.wirtinger import Complexes, Operator, director, energy, operator, stretched
 
 Stretches = tuple[float, float]
@@ -39,6 +38,9 @@ class Stop:
     max_iterations: int = 5000
 
 
+DEFAULT = Stop()
+
+
 @dataclass(frozen=True, eq=False)
 class Rigid:
     """What all starts share: the target laid flat as rigidly as it goes."""
@@ -52,7 +54,7 @@ class Rigid:
 def lay_flat(surface: Surface) -> Rigid:
     """Map the disk to a circle (always valid), then minimise the same energy with both stretches 1."""
     op = operator(surface)
-    w = _descend(op, _complex(convex_map(surface)), ISOMETRIC, "lbfgs", Stop(ROUGH)).x
+    w = _descend(op, _complex(convex_map(surface)), ISOMETRIC, method="lbfgs", stop=Stop(ROUGH)).x
     return Rigid(surface, op, _complex(long_side_along_x(_plane(w))))
 
 
@@ -60,9 +62,10 @@ def flatten(
     rigid: Rigid,
     stretches: Stretches,
     angle: float,
-    stop: Stop = Stop(),
+    stop: Stop = DEFAULT,
+    *,
     method: str = "lbfgs",
-    tick: Callable[[int], None] = lambda _: None,
+    tick: Tick = unheard,
 ) -> Flattening:
     """Minimise the energy from one start: the rigid map, stretched by ``1/along`` in the direction ``angle``.
 
@@ -73,7 +76,7 @@ def flatten(
     tick : called before each iteration with its number; it may raise to stop.
     """
     start = stretched(rigid.w, stretches, angle)
-    found = _descend(rigid.operator, start, stretches, method, stop, tick)
+    found = _descend(rigid.operator, start, stretches, method=method, stop=stop, tick=tick)
     uv = _plane(found.x)
     finite = bool(np.isfinite(found.history[-1]))
     flipped = judge.flipped(uv, rigid.surface.faces)
@@ -94,7 +97,7 @@ local_global = partial(flatten, method="local_global")
 
 
 def compete(
-    surface: Surface, stretches: Stretches, starts: int = 12, stop: Stop = Stop(), progress: Progress = silent
+    surface: Surface, material: Material, starts: int = 12, stop: Stop = DEFAULT, progress: Progress = silent
 ) -> tuple[Flattening, tuple[Start, ...]]:
     """Minimise from stretches of the plane in ``starts`` directions and take the best.
 
@@ -111,8 +114,8 @@ def compete(
     for k in range(starts):
         tick = partial(_report, progress, k / starts, 1 / starts, stop.max_iterations)
         angle = k * np.pi / starts
-        flat = flatten(rigid, stretches, angle, stop, tick=tick)
-        results.append((flat, _record(surface, flat, stretches, angle, bending)))
+        flat = flatten(rigid, (material.along, material.across), angle, stop, tick=tick)
+        results.append((flat, _record(surface, flat, material, angle, bending)))
     progress("flatten", 1.0)
     return results[_best([start for _, start in results])][0], tuple(start for _, start in results)
 
@@ -121,20 +124,21 @@ def _report(progress: Progress, done: float, share: float, limit: int, iteration
     progress("flatten", done + share * iteration / limit)
 
 
-def _record(surface: Surface, flat: Flattening, stretches: Stretches, angle: float, bending: Floats) -> Start:
+def _record(surface: Surface, flat: Flattening, material: Material, angle: float, bending: Floats) -> Start:
     faults = {"flipped": len(flat.flipped), "crossings": len(flat.crossings)}
     if flat.status is Status.NOT_FINITE:
         return Start(angle, flat.status, rms=np.inf, bending_left=1.0, **faults)
     area = face_areas(surface)
-    errors = judge.stretch_errors(judge.stretches(surface, flat.uv, *stretches), *stretches)
-    left = bending_left(pull_back(bending, judge.jacobians(surface, flat.uv)), flat.theta, area)
+    errors = judge.stretch_errors(judge.stretches(surface, flat.uv, material), material)
+    form = pull_back(bending, judge.jacobians(surface, flat.uv))
+    left = bending_left(form, flat.theta, material, area)
     return Start(angle, flat.status, rms=judge.rms(errors, area), bending_left=left, **faults)
 
 
 def _best(starts: list[Start]) -> int:
-    """Index of the fewest faults, then the smallest score, then (all flat) the smallest rms, then the first."""
-    fewest = min((s.status is Status.NOT_FINITE, s.flipped + s.crossings) for s in starts)
-    valid = [k for k, s in enumerate(starts) if (s.status is Status.NOT_FINITE, s.flipped + s.crossings) == fewest]
+    """Index of the smallest score among those with the fewest faults; the first of equals."""
+    faults = [(start.status is Status.NOT_FINITE, start.flipped + start.crossings) for start in starts]
+    valid = [k for k, fault in enumerate(faults) if fault == min(faults)]
     limit = (1 + TIE) * min(starts[k].score for k in valid)
     return next(k for k in valid if starts[k].score <= limit)
 
@@ -143,9 +147,10 @@ def _descend(
     op: Operator,
     w: Complexes,
     stretches: Stretches,
+    *,
     method: str,
     stop: Stop,
-    tick: Callable[[int], None] = lambda _: None,
+    tick: Tick = unheard,
 ) -> Minimum:
     return minimise(
         lambda x: energy(op, x, stretches),
@@ -171,7 +176,8 @@ def _status(finite: bool, flipped: int, crossings: int, converged: bool) -> Stat
 def _outline_crossings(uv: Floats, faces: Ints) -> Ints:
     """(k, 2) pairs of boundary edges that cross, each named by its first vertex."""
     edges = np.concatenate([np.column_stack([loop, np.roll(loop, -1)]) for loop in boundary_loops(faces)])
-    return edges[judge.crossings(uv, edges), 0]
+    pairs: Ints = edges[judge.crossings(uv, edges), 0]
+    return pairs
 
 
 def _complex(uv: Floats) -> Complexes:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from lce_solver.geometry import face_areas, vertex_normals
+from lce_solver.geometry import vertex_normals
 from lce_solver.judge import jacobians
 from lce_solver.topology import boundary_loops
 from lce_solver.types import Floats, Ints, Material, Surface
@@ -114,17 +114,22 @@ def twisted_form(dtheta: Floats, theta: Floats, material: Material, thickness: f
     return form
 
 
-def bending_left(form: Floats, theta: Floats, area: Floats) -> float:
-    """Share of the bending (Frobenius norm over the area) that no twist can prescribe: the director frame's diagonal."""
-    turned = in_director_frame(form, theta)
-    whole = np.einsum("f,fij,fij->", area, turned, turned)
-    left = np.einsum("f,fii,fii->", area, turned, turned)
+def bending_left(form: Floats, theta: Floats, material: Material, area: Floats) -> float:
+    """Share of the bending that no twist can prescribe: the diagonal in the director frame.
+
+    The norm is Frobenius' over the target's area, in units of the heated sheet (each axis divided by its stretch, as
+    the elastic energy measures it). In plain sheet coordinates the axis across the director would count too much,
+    and the ranking of starts would prefer solutions that bend wrongly.
+    """
+    stretch = np.array([material.along, material.across])
+    squared = (in_director_frame(form, theta) / np.outer(stretch, stretch)) ** 2
+    whole, left = area @ squared.sum(axis=(1, 2)), area @ np.trace(squared, axis1=1, axis2=2)
     return float(np.sqrt(left / whole)) if whole > FLAT**2 else 0.0
 
 
-def edge_factor(surface: Surface, uv: Floats) -> Floats:
+def edge_factor(uv: Floats, faces: Ints) -> Floats:
     """(n_f,) the paper's overdrive ``1 + 5 exp(-d / 2 mm)``, d from a triangle's centroid to the edge; uv in mm."""
-    factor: Floats = 1 + OVERDRIVE * np.exp(-edge_distance(uv, surface.faces) / OVERDRIVE_REACH)
+    factor: Floats = 1 + OVERDRIVE * np.exp(-edge_distance(uv, faces) / OVERDRIVE_REACH)
     return factor
 
 

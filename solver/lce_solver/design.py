@@ -1,0 +1,108 @@
+"""From a target to a design: metric, then orientation and size of the sheet, then twist, and what was measured."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from lce_solver import judge
+from lce_solver.assess import assess
+from lce_solver.errors import InputError, SolverError
+from lce_solver.geometry import area_vectors, face_areas
+from lce_solver.metric import Stop, compete
+from lce_solver.plane import rectangle_angles, turn
+from lce_solver.twist import bending_left, edge_factor, second_form, twist
+from lce_solver.types import Design, Floats, Material, Progress, Status, Surface, line_angle, silent
+
+SIDEWAYS = 0.1
+"""If less than this of the x axis is seen along the mean normal, the y axis points right instead."""
+
+
+def design(
+    surface: Surface,
+    material: Material,
+    width: float,
+    thickness: float,
+    *,
+    twist_gain: float = 1.0,
+    edge_overdrive: bool = False,
+    starts: int = 12,
+    tolerance: float = 1e-8,
+    max_iterations: int = 5000,
+    progress: Progress = silent,
+) -> Design:
+    """Design the flat sheet that heats into ``surface``.
+
+    A sheet with flipped triangles or a crossing outline comes back too, with findings of severity error: look at
+    ``flattening.status`` before you call it a success.
+
+    Parameters
+    ----------
+    surface : the target, in any unit of length.
+    width : longest side of the sheet's bounding box [mm]; it fixes the size of the target too.
+    thickness : of the film as prepared [mm].
+    twist_gain : multiplies the twist; 2 gives the paper's S5 as printed, up to the stretch of the thickness.
+    edge_overdrive : multiply the twist by the paper's ``1 + 5 exp(-d / 2 mm)``, d = distance to the sheet's edge.
+    starts : number of directions of the first stretch that compete.
+
+    Raises
+    ------
+    InputError
+        Width or thickness is not a positive length.
+    SolverError
+        No start ended with a finite energy.
+    """
+    for name, length in (("width", width), ("thickness", thickness)):
+        if not (np.isfinite(length) and length > 0):
+            msg = f"the sheet's {name} is {length:g} mm; give a positive length"
+            raise InputError(msg)
+    flat, competed = compete(surface, material, starts, Stop(tolerance, max_iterations), progress)
+    if flat.status is Status.NOT_FINITE:
+        msg = f"{flat.status.value}: the target has triangles far too thin or too small; remesh it"
+        raise SolverError(msg)
+    angle = sheet_angle(flat.uv, surface)
+    lying = turn(flat.uv, angle)
+    low, high = lying.min(axis=0), lying.max(axis=0)
+    scale = width / (high - low).max()
+    target = Surface(surface.vertices * scale, surface.faces)
+    uv = (lying - (low + high) / 2) * scale
+    theta = line_angle(flat.theta + angle)
+    form = second_form(target, uv)
+    gain = twist_gain * (edge_factor(uv, target.faces) if edge_overdrive else 1.0)
+    dtheta = gain * twist(form, theta, material, thickness)
+    result = Design(
+        surface=target,
+        uv=uv,
+        theta=theta,
+        dtheta=dtheta,
+        stretch=judge.stretches(target, uv, material),
+        material=material,
+        thickness=thickness,
+        flattening=flat,
+        bending_left=bending_left(form, theta, material, face_areas(target)),
+        starts=competed,
+    )
+    return replace(result, findings=assess(result))
+
+
+def sheet_angle(uv: Floats, surface: Surface) -> float:
+    """Turn of the sheet that makes its smallest rectangle axis-parallel and the target's x and y come out best [rad].
+
+    The target is seen against its mean normal, with its x axis (y when that is hidden) to the right.
+    """
+    quarter_turns = np.arange(4) * np.pi / 2
+    candidates = (quarter_turns - rectangle_angles(uv)[:, None]).ravel()
+    seen, flat = (points - points.mean(axis=0) for points in (_seen_from_above(surface), uv))
+    agreement = (turn(flat[None], candidates[:, None]) * seen).sum(axis=(1, 2))
+    return float(candidates[np.argmax(agreement)])
+
+
+def _seen_from_above(surface: Surface) -> Floats:
+    """(n_v, 2) the target in a view against its mean normal."""
+    total = area_vectors(surface).sum(axis=0)
+    normal = total / np.linalg.norm(total)
+    right = next(e for e in np.eye(3)[:2] - np.outer(normal[:2], normal) if np.linalg.norm(e) > SIDEWAYS)
+    right = right / np.linalg.norm(right)
+    seen: Floats = surface.vertices @ np.column_stack([right, np.cross(normal, right)])
+    return seen
