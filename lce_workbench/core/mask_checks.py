@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from lce_solver.types import Finding, Floats, Ints, Severity
 from lce_workbench.core.channels import MIN_LENGTH, Channels, blocks
-from lce_workbench.core.domains import Domains, Plate
+from lce_workbench.core.domains import Domains
 from lce_workbench.core.frame import Frame
 from lce_workbench.core.job import ChannelSpec, Job
 from lce_workbench.core.mask import EXPOSED, Mask, Nanometres, flipped, written
@@ -50,8 +50,10 @@ class Block:
     """(4, n) the same corners in sheet coordinates seen from above."""
     domain: Ints
     """(n,) domain of each channel."""
-    domains: Domains
-    plate: Plate
+    borders: Points
+    """(3, n_d) corners of all domains, seen from above."""
+    direction: Floats
+    """(n_d,) angle of the channels that all domains should have on the master [rad]."""
     spec: ChannelSpec
 
 
@@ -100,10 +102,10 @@ def spacing(block: Block) -> Measured:
 def inset(block: Block) -> Measured:
     """Distance of each channel from the nearest edge of its domain, negative outside [nm]."""
     first = int(block.domain[0])
-    corners = _points(block.domains.corners[first : int(block.domain[-1]) + 1] / NM).T
     local = block.domain - first
+    borders = block.borders[:, first : int(block.domain[-1]) + 1]
     nearest = np.full(len(local), np.inf)
-    for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+    for start, end in zip(borders, np.roll(borders, -1, axis=0), strict=True):
         along = (end - start) / np.abs(end - start)
         offset, x, y = _cross(along, start)[local], along.real[local], along.imag[local]
         for corner in block.seen:
@@ -118,7 +120,7 @@ def angle_error(block: Block) -> Measured:
     size = np.abs(along)
     domain, starts = np.unique(block.domain, return_index=True)
     mean = np.add.reduceat(along**2 / size, starts)
-    error = np.angle(mean * np.exp(-2j * block.domains.written(block.plate)[domain])) / 2
+    error = np.angle(mean * np.exp(-2j * block.direction[domain])) / 2
     weight = np.minimum(np.add.reduceat(size, starts) / FULL_WEIGHT, 1.0)
     return np.degrees(np.abs(error)) * weight, domain
 
@@ -157,10 +159,11 @@ def check(mask: Mask, domains: Domains, channels: Channels, frame: Frame, job: J
 def _channel_findings(mask: Mask, domains: Domains, channels: Channels, spec: ChannelSpec) -> Iterator[Finding]:
     """The worst value of every channel check."""
     worst: dict[str, tuple[float, int]] = {}
+    borders, direction = _points(domains.corners / NM).T, domains.written(mask.plate)
     for rows in blocks(channels):
         corners = np.ascontiguousarray(_points(mask.channels[rows]).T)
         seen = -np.conj(corners[::-1]) if mask.plate == "top" else corners
-        block = Block(corners, seen, channels.domain[rows], domains, mask.plate, spec)
+        block = Block(corners, seen, channels.domain[rows], borders, direction, spec)
         for name, item in CHANNEL_CHECKS.items():
             values, domain = item.measure(block)
             if len(values):
@@ -223,15 +226,13 @@ def _mark_findings(mask: Mask, frame: Frame, job: Job) -> Iterator[Finding]:
 
 def _extent_findings(mask: Mask) -> Iterator[Finding]:
     """Everything lies on the writer's largest plate, and what is exposed lies on this one."""
-    reach = max(int(np.abs(group).max()) for groups in mask.layers.values() for group in groups)
-    yield _judged(mask, "extent", "largest coordinate", Measurement(float(reach), MAX_REACH, False, "nm"))
-    x0, y0, x1, y1 = _boxes(mask.layers["PLATE"][0])[0]
-    inside = []
-    for group in (group for name in EXPOSED for group in mask.layers[name]):
-        (low_x, low_y), (high_x, high_y) = group.min(axis=(0, 1)), group.max(axis=(0, 1))
-        inside += [low_x - x0, low_y - y0, x1 - high_x, y1 - high_y]
+    bounds = {name: np.array([_bounds(group) for group in groups]) for name, groups in mask.layers.items()}
+    reach = max(float(np.abs(found).max()) for found in bounds.values())
+    yield _judged(mask, "extent", "largest coordinate", Measurement(reach, MAX_REACH, False, "nm"))
+    plate, exposed = bounds["PLATE"][0], np.concatenate([bounds[name] for name in EXPOSED])
+    inside = min((exposed - plate)[:, :2].min(), (plate - exposed)[:, 2:].min())
     text = "smallest distance from what is exposed to the plate's edge"
-    yield _judged(mask, "plate_margin", text, Measurement(float(min(inside)), 0.0, True, "nm"))
+    yield _judged(mask, "plate_margin", text, Measurement(float(inside), 0.0, True, "nm"))
 
 
 @dataclass(frozen=True)
@@ -274,6 +275,12 @@ def _cross(a: Points, b: Points) -> Floats:
 def _boxes(polygons: Nanometres) -> Floats:
     """Bounding boxes (n, 4): low x, low y, high x, high y."""
     return np.concatenate([polygons.min(axis=1), polygons.max(axis=1)], axis=1).astype(np.float64)
+
+
+def _bounds(polygons: Nanometres) -> tuple[int, ...]:
+    """Low x, low y, high x, high y of all polygons."""
+    x, y = polygons[..., 0], polygons[..., 1]
+    return int(x.min()), int(y.min()), int(x.max()), int(y.max())
 
 
 def _gaps(a: Floats, b: Floats) -> Floats:
