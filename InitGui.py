@@ -1,4 +1,5 @@
 import FreeCADGui
+
 from lce_workbench.gui.workbench import LceWorkbench
 
 FreeCADGui.addWorkbench(LceWorkbench())

@@ -44,7 +44,7 @@ def end() -> None:
         code = run(arguments(sys.argv))
     except KeyboardInterrupt:
         code = 130
-    except Exception:  # noqa: BLE001  FreeCAD would run the script again
+    except Exception:
         traceback.print_exc()
         code = 1
     finally:

@@ -26,21 +26,18 @@ def resolve(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Fi
     InputError
         The mesh is not usable, or the surface's name is unknown.
     """
-    if job.target.surface:
-        surface, found = _shipped(job, material), ()
-    else:
-        surface, found = _meshed(job, material, base)
+    surface, found = _shipped(job, material) if job.target.surface else _meshed(job, material, base)
     return (turned(surface) if job.target.flip else surface), found
 
 
-def _shipped(job: Job, material: Material) -> Surface:
+def _shipped(job: Job, material: Material) -> tuple[Surface, tuple[Finding, ...]]:
     name = job.target.surface
     if name not in SURFACES:
         msg = f"target.surface {name!r} is unknown; shipped are {', '.join(SURFACES)}"
         raise InputError(msg)
     coarse = SURFACES[name](COARSE)
     per_edge = flat_edge(coarse, job, material) / mean_edge(coarse)
-    return SURFACES[name](job.domains.size / per_edge)
+    return SURFACES[name](job.domains.size / per_edge), ()
 
 
 def _meshed(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Finding, ...]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import FreeCADGui
+
 from lce_workbench import ROOT, packages
 
 

@@ -37,7 +37,7 @@ def dome(edge: float) -> Surface:
 
 
 def saddle(edge: float) -> Surface:
-    """z = `SADDLE` (x^2 - y^2) over a disk of diameter 1."""
+    """Z = `SADDLE` (x^2 - y^2) over a disk of diameter 1."""
 
     def embed(uv: Floats) -> Floats:
         x, y = uv.T / 2
