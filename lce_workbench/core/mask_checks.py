@@ -77,7 +77,7 @@ def width_error(block: Block) -> Measured:
     """Largest deviation of each channel's width, at both its ends [nm]."""
     p = block.seen
     along = p[1] - p[0]
-    ends = np.stack([_cross(along, p[2] - p[0]), _cross(along, p[3] - p[0])]) / np.abs(along)
+    ends = np.stack([_cross(along, p[2] - p[0]), _cross(along, p[3] - p[0])]) / _size(along)
     return np.abs(ends - block.spec.width / NM).max(axis=0), block.domain
 
 
@@ -91,10 +91,10 @@ def spacing(block: Block) -> Measured:
     """Land between neighbours of one domain, where they face each other [nm]."""
     same = block.domain[1:] == block.domain[:-1]
     lower, upper = block.seen[2:, :-1][:, same], block.seen[:2, 1:][:, same]
-    end = np.abs(lower[0] - lower[1])
+    end = _size(lower[0] - lower[1])
     a, b = (upper - lower[1]) * np.conj((lower[0] - lower[1]) / end)  # real: along the lower one, imaginary: across
     first, last = np.maximum(a.real, 0.0), np.minimum(b.real, end)
-    slope = (b.imag - a.imag) / (b.real - a.real)
+    slope = (b.imag - a.imag) / np.maximum(b.real - a.real, 1.0)
     gap = a.imag + np.minimum(slope * (first - a.real), slope * (last - a.real))
     return np.where(first < last, gap, np.inf), block.domain[1:][same]
 
@@ -117,7 +117,7 @@ def angle_error(block: Block) -> Measured:
     """Error of each domain's direction on the master, length-weighted as a line field [degrees]."""
     p = block.written
     along = (p[1] - p[0] + p[2] - p[3]) / 2
-    size = np.abs(along)
+    size = _size(along)
     domain, starts = np.unique(block.domain, return_index=True)
     mean = np.add.reduceat(along**2 / size, starts)
     error = np.angle(mean * np.exp(-2j * block.direction[domain])) / 2
@@ -270,6 +270,11 @@ def _cross(a: Points, b: Points) -> Floats:
     """Vector product of a and b: positive if b points to the left of a."""
     product: Floats = a.real * b.imag - a.imag * b.real
     return product
+
+
+def _size(a: Points) -> Floats:
+    """Lengths of vectors, at least 1 nm: a collapsed edge is for `polygon_edge` to report and must not divide by 0."""
+    return np.maximum(np.abs(a), 1.0)
 
 
 def _boxes(polygons: Nanometres) -> Floats:

@@ -6,15 +6,13 @@ ezdxf makes the document around them (header, tables, layers); the entities, a m
 from __future__ import annotations
 
 import io
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lce_workbench.core.mask import LAYERS, Mask, Nanometres
-
-if TYPE_CHECKING:
-    from ezdxf.document import Drawing
 
 BLOCK = 8192
 """Polygons formatted at once."""
@@ -51,30 +49,32 @@ def _document(mask: Mask, count: int) -> tuple[str, str, str, int]:
     """Text before and after the polygons, handle of the model space that owns them, first of ``count`` free handles."""
     import ezdxf
 
-    document = ezdxf.new("R2000", units=MICRONS)
-    for name, number in LAYERS.items():
-        document.layers.add(name, color=number)
-    low, high = _extent(mask)
-    document.modelspace().reset_extents((*low, 0.0), (*high, 0.0))
-    document.set_modelspace_vport(height=1.1 * max(high - low), center=tuple((low + high) / 2))
-    handles = document.entitydb.handles
-    first = int(str(handles), 16)
-    handles.reset(f"{first + count:X}")  # $HANDSEED comes after the polygons
-    before, mark, after = _text(document).partition(EMPTY_ENTITIES)
+    stream = io.StringIO()
+    with _fixed_stamps():
+        document = ezdxf.new("R2000", units=MICRONS)
+        for name, number in LAYERS.items():
+            document.layers.add(name, color=number)
+        low, high = _extent(mask)
+        document.modelspace().reset_extents((*low, 0.0), (*high, 0.0))
+        document.set_modelspace_vport(height=1.1 * max(high - low), center=tuple((low + high) / 2))
+        handles = document.entitydb.handles
+        first = int(str(handles), 16)
+        handles.reset(f"{first + count:X}")  # $HANDSEED comes after the polygons
+        document.write(stream)
+    before, mark, after = stream.getvalue().partition(EMPTY_ENTITIES)
     return before + mark, after, document.modelspace().layout_key, first
 
 
-def _text(document: Drawing) -> str:
-    """The document, with ezdxf's fixed time stamps and identifiers instead of today's."""
+@contextmanager
+def _fixed_stamps() -> Iterator[None]:
+    """Make ezdxf write fixed time stamps and identifiers, so that the bytes depend on the mask alone."""
     from ezdxf import options
 
-    stream = io.StringIO()
-    today, options.write_fixed_meta_data_for_testing = options.write_fixed_meta_data_for_testing, True
+    former, options.write_fixed_meta_data_for_testing = options.write_fixed_meta_data_for_testing, True
     try:
-        document.write(stream)
+        yield
     finally:
-        options.write_fixed_meta_data_for_testing = today
-    return stream.getvalue()
+        options.write_fixed_meta_data_for_testing = former
 
 
 def _extent(mask: Mask) -> tuple[np.ndarray, np.ndarray]:

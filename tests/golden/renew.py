@@ -1,0 +1,25 @@
+"""Write the golden masks anew, after a wanted change: PYTHONPATH=.:solver:tests python tests/golden/renew.py."""
+
+import gzip
+import tempfile
+from pathlib import Path
+
+from sheets import both_masks, design
+
+from lce_workbench.core.domains import partition
+from lce_workbench.export import gdsii
+
+FOLDER = Path(__file__).parent
+
+
+def small_masks():
+    """Both plates of a sheet of four small domains."""
+    return both_masks(partition(design(1, 2, width=0.08, height=0.14)))[2]
+
+
+if __name__ == "__main__":
+    for plate, mask in small_masks().items():
+        with tempfile.TemporaryDirectory() as folder:
+            gdsii.write(mask, Path(folder) / "mask.gds")
+            data = (Path(folder) / "mask.gds").read_bytes()
+        (FOLDER / f"{plate}.gds.gz").write_bytes(gzip.compress(data, mtime=0))
