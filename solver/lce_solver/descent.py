@@ -14,6 +14,7 @@ from lce_solver.types import Floats
 Complexes = NDArray[np.complex128]
 Function = Callable[[Complexes], tuple[float, Complexes]]
 """Value and gradient, the latter as d/dx + i d/dy."""
+Inverse = Callable[[Complexes], Complexes]
 Tick = Callable[[int], None]
 """Called before each iteration with its number; it may raise to stop the work."""
 
@@ -23,6 +24,16 @@ FLOOR = 1e-30
 """A decrease below this is nothing, however small the value itself (exact solutions end at zero)."""
 SUFFICIENT, CURVED, TRIALS = 1e-4, 0.9, 40
 """The line search: least decrease (Armijo), largest remaining slope (Wolfe), most evaluations."""
+
+
+@dataclass(frozen=True)
+class Method:
+    """A way to use the inverse Hessian that the caller offers."""
+
+    memory: int
+    """Steps remembered by L-BFGS; with 0 every step is the plain ``-inverse(gradient)``."""
+    stride: float
+    """Multiplies the offered inverse where there is memory: more than 1 if it belongs to too stiff a model."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,9 +60,9 @@ def unheard(iteration: int) -> None:
 def minimise(
     function: Function,
     x: Complexes,
-    inverse: Callable[[Complexes], Complexes],
+    inverse: Inverse,
     *,
-    memory: int,
+    method: Method,
     tolerance: float,
     max_iterations: int,
     tick: Tick,
@@ -60,15 +71,14 @@ def minimise(
 
     Parameters
     ----------
-    inverse : product with a positive inverse Hessian; with ``memory = 0`` the method is the plain step
-        ``x - inverse(gradient)``.
+    inverse : product with the inverse of a positive model of the Hessian.
     """
     point = _Point(x, *function(x))
     history = [point.value]
-    pairs: deque[tuple[Complexes, Complexes, float]] = deque(maxlen=memory)
+    pairs: deque[tuple[Complexes, Complexes, float]] = deque(maxlen=method.memory)
     while np.isfinite(point.value) and len(history) <= max_iterations:
         tick(len(history) - 1)
-        downhill = -_product(pairs, inverse, point.gradient)
+        downhill = -_product(pairs, inverse, method.stride, point.gradient)
         after = _search(function, point, downhill)
         if after is None and pairs:
             pairs.clear()  # the memory is stale: begin again from the plain step
@@ -100,16 +110,18 @@ def _remember(pairs: deque[tuple[Complexes, Complexes, float]], step: Complexes,
 
 
 def _product(
-    pairs: deque[tuple[Complexes, Complexes, float]], inverse: Callable[[Complexes], Complexes], gradient: Complexes
+    pairs: deque[tuple[Complexes, Complexes, float]], inverse: Inverse, stride: float, gradient: Complexes
 ) -> Complexes:
     """Inverse Hessian times gradient (two-loop recursion; Nocedal and Wright, algorithm 7.4)."""
+    if not pairs:
+        return inverse(gradient)
     q = gradient.copy()
     shares = []
     for step, change, curvature in reversed(pairs):
         share = _dot(step, q) / curvature
         q -= share * change
         shares.append(share)
-    q = inverse(q)
+    q = stride * inverse(q)
     for (step, change, curvature), share in zip(pairs, reversed(shares), strict=True):
         q += (share - _dot(change, q) / curvature) * step
     return q

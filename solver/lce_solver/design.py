@@ -8,12 +8,12 @@ import numpy as np
 
 from lce_solver import judge
 from lce_solver.assess import assess
-from lce_solver.errors import InputError, SolverError
+from lce_solver.errors import InputError
 from lce_solver.geometry import area_vectors, face_areas
 from lce_solver.metric import Stop, compete
 from lce_solver.plane import rectangle_angles, turn
 from lce_solver.twist import bending_left, edge_factor, second_form, twist
-from lce_solver.types import Design, Floats, Material, Progress, Status, Surface, line_angle, silent
+from lce_solver.types import Design, Floats, Material, Progress, Surface, line_angle, silent
 
 SIDEWAYS = 0.1
 """If less than this of the x axis is seen along the mean normal, the y axis points right instead."""
@@ -50,17 +50,12 @@ def design(
     ------
     InputError
         Width or thickness is not a positive length.
-    SolverError
-        No start ended with a finite energy.
     """
     for name, length in (("width", width), ("thickness", thickness)):
         if not (np.isfinite(length) and length > 0):
             msg = f"the sheet's {name} is {length:g} mm; give a positive length"
             raise InputError(msg)
     flat, competed = compete(surface, material, starts, Stop(tolerance, max_iterations), progress)
-    if flat.status is Status.NOT_FINITE:
-        msg = f"{flat.status.value}: the target has triangles far too thin or too small; remesh it"
-        raise SolverError(msg)
     angle = sheet_angle(flat.uv, surface)
     lying = turn(flat.uv, angle)
     low, high = lying.min(axis=0), lying.max(axis=0)

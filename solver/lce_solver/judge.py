@@ -19,7 +19,7 @@ def stretches(surface: Surface, uv: Floats, material: Material) -> Floats:
 
     The director is the principal direction whose stretch comes in the same order of size as ``material.along``.
     """
-    large_first: Floats = np.linalg.svd(jacobians(surface, uv), compute_uv=False)
+    large_first = np.asarray(np.linalg.svd(jacobians(surface, uv), compute_uv=False), dtype=np.float64)
     return large_first if material.along > material.across else large_first[:, ::-1]
 
 
@@ -36,7 +36,8 @@ def rms(errors: Floats, area: Floats) -> float:
 
 def flipped(uv: Floats, faces: Ints) -> Ints:
     """(k,) triangles that are not counter-clockwise in the plane."""
-    return np.flatnonzero(~(np.linalg.det(_edges(uv, faces)) > 0))
+    (u1, u2), (v1, v2) = np.moveaxis(_edges(uv, faces), 0, -1)
+    return np.flatnonzero(~(u1 * v2 - u2 * v1 > 0))  # so that what is not a number is flipped too
 
 
 def crossings(uv: Floats, edges: Ints) -> Ints:

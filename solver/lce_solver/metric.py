@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from lce_solver import judge
-from lce_solver.descent import Minimum, Tick, minimise, unheard
+from lce_solver.descent import Method, Minimum, Tick, minimise, unheard
 from lce_solver.geometry import face_areas
 from lce_solver.plane import convex_map, long_side_along_x
 from lce_solver.topology import boundary_loops
@@ -19,12 +19,17 @@ from lce_solver.wirtinger import Complexes, Operator, director, energy, operator
 Stretches = tuple[float, float]
 """Wanted stretches sheet -> target, along and across the director."""
 
-MEMORY = {"lbfgs": 10, "local_global": 0}
-"""Steps that each method remembers. With none, the step is the global step of the paper's local/global method."""
+METHODS = {"lbfgs": Method(memory=10, stride=4.0), "local_global": Method(memory=0, stride=1.0)}
+"""The Laplacian models every term as stiff in all directions, but each is stiff in one of two: hence long strides.
+
+Without memory the step is the global step of the paper's local/global method (its local step is in the energy).
+"""
 ISOMETRIC: Stretches = (1.0, 1.0)
 """With these stretches the energy is that of an as-rigid-as-possible map."""
 ROUGH = 1e-6
 """Tolerance of the as-rigid-as-possible map: the director's stretch changes it anyway."""
+TYPICAL = 300
+"""Iterations of one start, for the progress bar only."""
 TIE = 1e-6
 """Scores as close as this are equal (symmetric targets); the smaller angle wins, so that the result is repeatable."""
 
@@ -72,7 +77,7 @@ def flatten(
     Parameters
     ----------
     angle : direction of the first guess of the director, from the long side of the rigid map [rad].
-    method : a name in `MEMORY`; ``local_global`` is the paper's.
+    method : a name in `METHODS`; ``local_global`` is the paper's.
     tick : called before each iteration with its number; it may raise to stop.
     """
     start = stretched(rigid.w, stretches, angle)
@@ -112,7 +117,7 @@ def compete(
     bending = bending_tensor(surface)
     results = []
     for k in range(starts):
-        tick = partial(_report, progress, k / starts, 1 / starts, stop.max_iterations)
+        tick = partial(_report, progress, k / starts, 1 / starts)
         angle = k * np.pi / starts
         flat = flatten(rigid, (material.along, material.across), angle, stop, tick=tick)
         results.append((flat, _record(surface, flat, material, angle, bending)))
@@ -120,24 +125,27 @@ def compete(
     return results[_best([start for _, start in results])][0], tuple(start for _, start in results)
 
 
-def _report(progress: Progress, done: float, share: float, limit: int, iteration: int) -> None:
-    progress("flatten", done + share * iteration / limit)
+def _report(progress: Progress, done: float, share: float, iteration: int) -> None:
+    progress("flatten", done + share * iteration / (iteration + TYPICAL))
 
 
 def _record(surface: Surface, flat: Flattening, material: Material, angle: float, bending: Floats) -> Start:
-    faults = {"flipped": len(flat.flipped), "crossings": len(flat.crossings)}
-    if flat.status is Status.NOT_FINITE:
-        return Start(angle, flat.status, rms=np.inf, bending_left=1.0, **faults)
     area = face_areas(surface)
     errors = judge.stretch_errors(judge.stretches(surface, flat.uv, material), material)
     form = pull_back(bending, judge.jacobians(surface, flat.uv))
-    left = bending_left(form, flat.theta, material, area)
-    return Start(angle, flat.status, rms=judge.rms(errors, area), bending_left=left, **faults)
+    return Start(
+        angle=angle,
+        status=flat.status,
+        rms=judge.rms(errors, area),
+        bending_left=bending_left(form, flat.theta, material, area),
+        flipped=len(flat.flipped),
+        crossings=len(flat.crossings),
+    )
 
 
 def _best(starts: list[Start]) -> int:
     """Index of the smallest score among those with the fewest faults; the first of equals."""
-    faults = [(start.status is Status.NOT_FINITE, start.flipped + start.crossings) for start in starts]
+    faults = [start.flipped + start.crossings for start in starts]
     valid = [k for k, fault in enumerate(faults) if fault == min(faults)]
     limit = (1 + TIE) * min(starts[k].score for k in valid)
     return next(k for k in valid if starts[k].score <= limit)
@@ -156,7 +164,7 @@ def _descend(
         lambda x: energy(op, x, stretches),
         w,
         op.solve,
-        memory=MEMORY[method],
+        method=METHODS[method],
         tolerance=stop.tolerance,
         max_iterations=stop.max_iterations,
         tick=tick,
