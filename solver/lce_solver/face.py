@@ -16,6 +16,7 @@ Stroke = tuple[Point, Point, Point, tuple[float, float, float], tuple[float, flo
 (standard deviations across the curve)."""
 
 MIDDLE: dict[str, Stroke] = {
+    # name: start, control, end; heights; widths
     "forehead": ((-0.07, 0.31), (0.0, 0.33), (0.07, 0.31), (0.020, 0.022, 0.020), (0.10, 0.10)),
     "nose bridge": ((0.0, 0.13), (0.0, 0.02), (0.0, -0.090), (0.020, 0.052, 0.070), (0.029, 0.044)),
     "nose tip": ((0.0, -0.10), (0.0, -0.105), (0.0, -0.11), (0.028, 0.028, 0.028), (0.039, 0.039)),
@@ -28,6 +29,7 @@ MIDDLE: dict[str, Stroke] = {
     "chin": ((-0.04, -0.425), (0.0, -0.435), (0.04, -0.425), (0.036, 0.044, 0.036), (0.050, 0.050)),
 }
 RIGHT: dict[str, Stroke] = {
+    # these are mirrored to the left
     "brow": ((0.05, 0.165), (0.15, 0.230), (0.27, 0.135), (0.018, 0.030, 0.014), (0.030, 0.034)),
     "socket": ((0.10, 0.090), (0.15, 0.095), (0.20, 0.085), (-0.042, -0.038, -0.024), (0.045, 0.045)),
     "eyeball": ((0.130, 0.084), (0.15, 0.086), (0.170, 0.084), (0.036, 0.040, 0.036), (0.033, 0.033)),
@@ -44,8 +46,12 @@ RIGHT: dict[str, Stroke] = {
 
 
 def face(edge: float) -> Surface:
-    """A face with brow, eyes, nose, lips, cheeks and chin, 1 high; features from three edges at ``edge = 0.0175``."""
-    return mesh(lambda xy: np.column_stack([xy, height(xy)]), outline, edge)
+    """The face. Its narrowest strokes (lids, mouth line) are about one edge wide at ``edge = 0.0175``."""
+
+    def embed(xy: Floats) -> Floats:
+        return np.column_stack([xy, height(xy)])
+
+    return mesh(embed, outline, edge)
 
 
 def outline(t: Floats) -> Floats:
@@ -66,7 +72,7 @@ def height(xy: Floats) -> Floats:
 def _vault(xy: Floats) -> Floats:
     """The skull without features: flat in front, turning back towards the ears."""
     x, y = (xy / (0.36, 0.5)).T
-    return -0.105 * x**2 - 0.055 * x**4 - 0.03 * y**2 - 0.04 * y**4
+    return np.asarray(-0.105 * x**2 - 0.055 * x**4 - 0.03 * y**2 - 0.04 * y**4)
 
 
 def _spots(stroke: Stroke) -> tuple[Floats, Floats, Floats]:

@@ -25,7 +25,7 @@ ZONE = np.radians(45.0)
 
 
 def dome(edge: float) -> Surface:
-    """Spherical cap of half angle `CAP` over a disk of diameter 1, its apex at the origin's height + 0."""
+    """Spherical cap of half angle `CAP` over the disk of diameter 1 in the plane z = 0."""
     radius = 0.5 / np.sin(CAP)
 
     def embed(uv: Floats) -> Floats:
@@ -37,7 +37,7 @@ def dome(edge: float) -> Surface:
 
 
 def saddle(edge: float) -> Surface:
-    """Z = `SADDLE` (x^2 - y^2) over a disk of diameter 1."""
+    """The saddle z = `SADDLE` (x^2 - y^2) over the disk of diameter 1."""
 
     def embed(uv: Floats) -> Floats:
         x, y = uv.T / 2
@@ -71,7 +71,6 @@ def cone(edge: float) -> Surface:
     """
 
     def embed(uv: Floats) -> Floats:
-        """The radius in the plane is 2 times the surface's radius to the power 1, both ends fixed."""
         radius = _radius(uv) / 2
         contact = TIP * np.cos(HALF_APEX)
         ball = np.sqrt(np.maximum(TIP**2 - radius**2, 0.0)) - TIP * np.sin(HALF_APEX)
