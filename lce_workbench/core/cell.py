@@ -1,0 +1,247 @@
+"""The mold and the closed cell as a stack of prisms, in sheet coordinates seen from above.
+
+::
+
+    +======================+  top_glass
+    +----------------------+  top_epoxy
+    +--+  +----------+  +--+  top_land: as thick as the channels are deep, with a hole for every mark and channel
+       [M]            [M]     spacer strips, and between them the film: z = -gap/2 ... +gap/2
+    +--+  +----------+  +--+  bottom_land
+    +----------------------+  bottom_epoxy
+    +======================+  bottom_glass
+
+Nothing here is mirrored: only the master of the top plate is, when its mask is composed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from lce_solver.errors import InputError
+from lce_solver.surface import boundary_loops
+from lce_solver.types import Floats
+from lce_workbench.core.channels import Channels, corners
+from lce_workbench.core.domains import PLATES, SIDE, Domains, Plate, signed_area
+from lce_workbench.core.frame import Frame
+from lce_workbench.core.job import Job
+from lce_workbench.core.merge import merged
+from lce_workbench.core.units import UM
+
+MAX_SOLIDS = 10_000
+"""Channel solids of both plates; about 30 domains."""
+
+SECONDS = 4e-3
+"""Time to build and write one channel solid."""
+
+MEGABYTES = 8e-3
+"""Size of one channel solid in a STEP file."""
+
+MAX_CUT = 300
+"""Channels cut into one land; the time to write and read a face grows with the square of its holes."""
+
+Colour = tuple[float, float, float]
+
+LOOKS: dict[str, tuple[Colour, float]] = {
+    "glass": ((0.66, 0.84, 0.90), 0.35),
+    "epoxy": ((0.93, 0.79, 0.42), 0.60),
+    "land": ((0.87, 0.60, 0.22), 1.0),
+    "mylar": ((0.56, 0.61, 0.67), 1.0),
+    "film": ((0.80, 0.22, 0.30), 0.90),
+    "channel": ((0.16, 0.44, 0.72), 1.0),
+}
+"""Material -> colour (red, green, blue in [0, 1], sRGB) and opacity."""
+
+
+@dataclass(frozen=True, eq=False)
+class Prism:
+    """A polygon with holes between two heights. Rings that run the other way round are turned."""
+
+    name: str
+    """ASCII; channels of one domain share a name and become one product."""
+    outline: Floats
+    """(n, 2) counter-clockwise [mm]."""
+    holes: tuple[Floats, ...]
+    """Each (k, 2), clockwise, as both CAD kernels need them [mm]."""
+    z0: float
+    """Lower face [mm]."""
+    z1: float
+    """Upper face [mm]."""
+    colour: Colour
+    opacity: float = 1.0
+    group: str = ""
+    """The assembly that it belongs to; "" is the cell itself."""
+
+    def __post_init__(self) -> None:
+        if not self.z1 > self.z0:
+            msg = f"{self.name}: z1 = {self.z1} must lie above z0 = {self.z0}"
+            raise ValueError(msg)
+        object.__setattr__(self, "outline", _turned(self.outline, 1))
+        object.__setattr__(self, "holes", tuple(_turned(hole, -1) for hole in self.holes))
+
+    @property
+    def rings(self) -> tuple[Floats, ...]:
+        """The outline and the holes."""
+        return (self.outline, *self.holes)
+
+    @property
+    def area(self) -> float:
+        """Area of the cross-section [mm2]."""
+        return float(sum(_moments(ring)[0] for ring in self.rings))
+
+    @property
+    def volume(self) -> float:
+        """[mm3]."""
+        return self.area * (self.z1 - self.z0)
+
+    @property
+    def centroid(self) -> Floats:
+        """(3,) centre of mass [mm]."""
+        x, y = np.sum([_moments(ring)[1:] for ring in self.rings], axis=0) / self.area
+        return np.array([x, y, (self.z0 + self.z1) / 2])
+
+
+@dataclass(frozen=True, eq=False)
+class Cell:
+    """The closed cell, z = 0 at the film's mid-plane."""
+
+    parts: tuple[Prism, ...]
+    """Plates, spacer and film."""
+    channels: tuple[Prism, ...]
+    """The trenches of the chosen domains as solids, grouped as ``channels_bottom`` and ``channels_top``."""
+
+    def group(self, name: str) -> tuple[Prism, ...]:
+        """The prisms of one assembly."""
+        return tuple(prism for prism in (*self.parts, *self.channels) if prism.group == name)
+
+
+def assemble(
+    frame: Frame,
+    job: Job,
+    domains: Domains,
+    marks: Mapping[Plate, Sequence[Floats]],
+    channels: Mapping[Plate, Channels],
+) -> Cell:
+    """Build the cell. The lands hold the marks, and the channels of the chosen domains up to `MAX_CUT`.
+
+    Parameters
+    ----------
+    marks : exposed polygons (k, 2) of each plate; where they touch, axis-parallel rectangles [mm].
+    channels : all channels of each plate.
+
+    Raises
+    ------
+    InputError
+        A chosen domain does not exist or has no channels, or the solids would be too many.
+    """
+    chosen = choose(domains, channels, job.output.step_domains)
+    gap = job.sheet.thickness
+    trenches = {plate: {k: corners(channels[plate], _rows(channels[plate], k)) for k in chosen} for plate in PLATES}
+    cut = _few_enough(channels, chosen)
+    bottom, top = (
+        _plate(frame, job, plate, [*merged(marks[plate]), *(ring for k in cut for ring in trenches[plate][k])])
+        for plate in PLATES
+    )
+    sheet = domains.vertices[boundary_loops(domains.triangles)[0]]
+    film = _part("sheet", "film", [sheet], (-gap / 2, gap / 2))
+    left, right = (
+        _part(f"spacer_{side}", "mylar", [strip.ring], (-gap / 2, gap / 2), "spacer")
+        for side, strip in zip(("left", "right"), frame.strips, strict=True)
+    )
+    solids = [
+        _channel_solid(channels[plate], k, ring, gap)
+        for plate, rings in trenches.items()
+        for k in chosen
+        for ring in rings[k]
+    ]
+    return Cell((*bottom[::-1], left, right, film, *top), tuple(solids))
+
+
+def choose(domains: Domains, channels: Mapping[Plate, Channels], wanted: Sequence[int]) -> tuple[int, ...]:
+    """The domains whose channels become solids: those ``wanted``, or the most central one.
+
+    Raises
+    ------
+    InputError
+        A domain does not exist or has no channels, or the solids would exceed `MAX_SOLIDS`.
+    """
+    counts = np.array([channels[plate].counts for plate in PLATES])
+    if not wanted:
+        far = np.linalg.norm(domains.centroid, axis=1)
+        return (int(np.argmin(np.where(counts.all(axis=0), far, np.inf))),)
+    for domain in wanted:
+        if not 0 <= domain < len(domains):
+            msg = f"output.step_domains: domain {domain} does not exist; the sheet has 0 to {len(domains) - 1}"
+            raise InputError(msg)
+        if not counts[:, domain].all():
+            msg = f"output.step_domains: domain {domain} is too small for a channel; choose another"
+            raise InputError(msg)
+    chosen = tuple(sorted(set(wanted)))
+    _require_budget(int(counts[:, chosen].sum()))
+    return chosen
+
+
+def _require_budget(solids: int) -> None:
+    """Refuse more than `MAX_SOLIDS` channels, with what they would cost."""
+    if solids > MAX_SOLIDS:
+        msg = (
+            f"output.step_domains asks for {solids} channel solids, about {solids * SECONDS:.0f} s and "
+            f"{solids * MEGABYTES:.0f} MB of STEP; the limit is {MAX_SOLIDS}, so choose fewer domains"
+        )
+        raise InputError(msg)
+
+
+def _few_enough(channels: Mapping[Plate, Channels], chosen: Sequence[int]) -> Sequence[int]:
+    """The first of the chosen domains, as many as have `MAX_CUT` channels together."""
+    counts = [channels[plate].counts[list(chosen)] for plate in PLATES]
+    return chosen[: int(np.searchsorted(np.cumsum(np.max(counts, axis=0)), MAX_CUT, side="right"))]
+
+
+def _plate(frame: Frame, job: Job, plate: Plate, recesses: Sequence[Floats]) -> tuple[Prism, ...]:
+    """Land, epoxy and glass, from the film outwards."""
+    side, group = SIDE[plate], f"{plate}_plate"
+    thickness = (job.channels.depth, job.plates.epoxy_um * UM, job.plates.glass_mm)
+    levels = side * np.cumsum([job.sheet.thickness / 2, *thickness])
+    rings = {"land": [frame.plate.ring, *recesses], "epoxy": [frame.plate.ring], "glass": [frame.plate.ring]}
+    return tuple(
+        _part(f"{plate}_{kind}", kind, rings[kind], (levels[i], levels[i + 1]), group) for i, kind in enumerate(rings)
+    )
+
+
+def _part(name: str, kind: str, rings: Sequence[Floats], z: tuple[float, float], group: str = "") -> Prism:
+    """A prism of one of the materials of `LOOKS`."""
+    colour, opacity = LOOKS[kind]
+    low, high = sorted(map(float, z))
+    return Prism(name, rings[0], tuple(rings[1:]), low, high, colour, opacity, group)
+
+
+def _channel_solid(channels: Channels, domain: int, ring: Floats, gap: float) -> Prism:
+    """One trench; the domain's name gives the channels' direction seen from above, in degrees."""
+    plate = channels.plate
+    degrees = round(float(np.degrees(channels.angle[domain])), 2) % 180
+    name = f"domain_{domain:04d}_theta_{plate}_{degrees:06.2f}"
+    z = SIDE[plate] * gap / 2, SIDE[plate] * (gap / 2 + channels.depth)
+    return _part(name, "channel", [ring], z, f"channels_{plate}")
+
+
+def _rows(channels: Channels, domain: int) -> slice:
+    """Rows of the channels of one domain."""
+    return slice(*map(int, np.searchsorted(channels.domain, [domain, domain + 1])))
+
+
+def _turned(ring: Floats, sign: int) -> Floats:
+    """The ring, counter-clockwise for ``sign`` +1, clockwise for -1; read-only."""
+    turned = np.array(ring if signed_area(ring[None])[0] * sign > 0 else ring[::-1])
+    turned.setflags(write=False)
+    return turned
+
+
+def _moments(ring: Floats) -> Floats:
+    """Signed area and first moments (3,) of a polygon, by the shoelace formula about its first corner."""
+    p = ring - ring[0]
+    q = np.roll(p, -1, axis=0)
+    cross = p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
+    area = cross.sum() / 2
+    return np.array([area, *(cross @ (p + q) / 6 + area * ring[0])])
