@@ -15,7 +15,7 @@ ROOT = HERE.parent
 
 
 def arguments(argv: list[str]) -> list[str]:
-    """What is ours in FreeCAD's argv: 0.20 has [script, ...], 1.0 ['freecadcmd', script, ...]; ours begins after `--`."""
+    """What is ours in FreeCAD's argv, after `--`: 0.20 has [script, ...], 1.0 ['freecadcmd', script, ...]."""
     marks = [place for place, word in enumerate(argv) if word in ("--", "--pass")]
     return argv[marks[0] + 1 :] if marks else []
 

@@ -130,15 +130,16 @@ def _run(args: argparse.Namespace, job: Job, base: Path, out: Path, names: list[
 
 
 def _tell(args: argparse.Namespace, out: Path, names: list[str], code: int) -> None:
-    """Say what was found and where the files are."""
+    """Say what was found and where the files are; what the checks measured without complaint stands in the manifest."""
     records = [r for r in read_manifest(out)["findings"] if r["stage"] in names]
     if getattr(args, "json", False):
         print(json.dumps({"out": str(out), "exit_code": code, "findings": records}))
         return
+    quiet = getattr(args, "quiet", False)
     for record in records:
-        if record["severity"] != "info" or not getattr(args, "quiet", False):
+        if record["severity"] != "info" or (record["stage"] == "design" and not quiet):
             print(f"{record['severity']}: {record['message']}", file=sys.stderr)
-    if not getattr(args, "quiet", False):
+    if not quiet:
         print(f"{', '.join(names)} written to {out}", file=sys.stderr)
 
 

@@ -20,9 +20,9 @@ from lce_solver.errors import EnvironmentFault, InputError, LceError, SolverErro
 from lce_solver.types import Design, Finding, Progress, Severity, Status, silent
 from lce_workbench import ROOT, __version__
 from lce_workbench.core import jobfile, material, target
-from lce_workbench.core.cell import assemble
+from lce_workbench.core.cell import Cell, assemble
 from lce_workbench.core.channels import empty_domains, hatch
-from lce_workbench.core.domains import partition
+from lce_workbench.core.domains import PLATES, partition
 from lce_workbench.core.frame import arrange
 from lce_workbench.core.job import Job
 from lce_workbench.core.marks import marks
@@ -40,8 +40,6 @@ from lce_workbench.outputs import (
     write_design,
     write_manifest,
 )
-
-PLATES = ("bottom", "top")
 
 Findings = tuple[Finding, ...]
 
@@ -191,17 +189,21 @@ def run_cad(run: Run) -> Findings:
     from lce_workbench.cad.step import write_cad
 
     plan = fabricable(read_design(run.folder / "design.npz"))
-    domains, frame = partition(plan), arrange(plan.uv, run.job)
-    channels = {plate: hatch(domains, plate, run.job.channels) for plate in PLATES}
-    drawn = {plate: np.concatenate(list(marks(frame, plate, run.job.marks).values())) for plate in PLATES}
-    cell = assemble(frame, run.job, plan, drawn, channels)
     (run.folder / "cad").mkdir()
-    write_cad(cell, run.folder / "cad", run.progress)
+    write_cad(cell_of(plan, run.job), run.folder / "cad", run.progress)
     if run.job.output.freecad:
         run.progress("cell.FCStd", 0.8)
         run_freecad("document", run.folder)
     run.progress("cad", 1.0)
     return ()
+
+
+def cell_of(plan: Design, job: Job) -> Cell:
+    """The assembled cell of a design."""
+    domains, frame = partition(plan), arrange(plan.uv, job)
+    channels = {plate: hatch(domains, plate, job.channels) for plate in PLATES}
+    drawn = {plate: np.concatenate(list(marks(frame, plate, job.marks).values())) for plate in PLATES}
+    return assemble(frame, job, domains, drawn, channels)
 
 
 def run_freecad(command: str, folder: Path) -> None:
