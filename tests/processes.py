@@ -1,8 +1,9 @@
-"""Start FreeCAD as its own process, without the user's settings, with and without a window."""
+"""Programs as their users start them: `./lce` in a small checkout, FreeCAD with and without a window."""
 
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,6 +14,30 @@ ROOT = Path(__file__).resolve().parent.parent
 BATCH = ROOT / "lce_workbench" / "batch.py"
 
 
+TELLING_CLI = '''
+import json
+import os
+import sys
+
+
+def main(argv):
+    """Tell what arrives; `end CODE` ends with it, `raise` with a defect, `import NAME` tells where NAME is."""
+    with open(os.environ["SEEN"], "a") as seen:
+        print(json.dumps({"argv": argv, "cwd": os.getcwd(), "path": sys.path}), file=seen)
+    if argv[:1] == ["end"]:
+        return int(argv[1])
+    if argv[:1] == ["raise"]:
+        raise RuntimeError("a defect")
+    if argv[:1] == ["import"]:
+        print("imported", __import__(argv[1]).__file__)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
+'''
+
+
 @dataclass(frozen=True)
 class Ended:
     """What a process left."""
@@ -20,6 +45,18 @@ class Ended:
     code: int
     out: str
     err: str
+
+
+def make_project(folder: Path) -> Path:
+    """A checkout in a folder with a blank in its name: the real launcher and batch entry, a command line that tells."""
+    root = folder / "a check out"
+    (root / "lce_workbench").mkdir(parents=True)
+    shutil.copytree(ROOT / "solver", root / "solver", ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("__init__.py", "packages.py", "batch.py"):
+        shutil.copy(ROOT / "lce_workbench" / name, root / "lce_workbench")
+    (root / "lce_workbench" / "cli.py").write_text(TELLING_CLI)
+    shutil.copy(ROOT / "lce", root)
+    return root
 
 
 def environment(home: Path, **more: str) -> dict[str, str]:
