@@ -51,11 +51,12 @@ def make_project(folder: Path) -> Path:
     """A checkout in a folder with a blank in its name: the real launcher and batch entry, a command line that tells."""
     root = folder / "a check out"
     (root / "lce_workbench").mkdir(parents=True)
-    shutil.copytree(ROOT / "solver", root / "solver", ignore=shutil.ignore_patterns("__pycache__"))
-    for name in ("__init__.py", "packages.py", "batch.py"):
-        shutil.copy(ROOT / "lce_workbench" / name, root / "lce_workbench")
+    for name in ("solver", "resources/icons", "lce_workbench/gui"):
+        shutil.copytree(ROOT / name, root / name, ignore=shutil.ignore_patterns("__pycache__"))
+    package = [f"lce_workbench/{name}.py" for name in ("__init__", "packages", "batch")]
+    for name in ("lce", "Init.py", "InitGui.py", "package.xml", *package):
+        shutil.copy(ROOT / name, root / name)
     (root / "lce_workbench" / "cli.py").write_text(TELLING_CLI)
-    shutil.copy(ROOT / "lce", root)
     return root
 
 

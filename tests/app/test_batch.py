@@ -31,7 +31,7 @@ def batch(project: Path, tmp_path: Path) -> Batch:
     return Batch(project, tmp_path / "home")
 
 
-@pytest.mark.parametrize("code", [0, 1, 2, 3, 4, 130])
+@pytest.mark.parametrize("code", [0, 3, 130])
 def test_exit_code_passes_freecad(batch: Batch, code: int) -> None:
     assert batch("end", str(code)).code == code
     assert len(batch.told()) == 1

@@ -15,9 +15,10 @@ import time
 import zipfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import pytest
-from processes import Ended, make_project, start
+from processes import Ended, display, environment, make_project, start
 
 TOOLS = "sh env dirname readlink cat cksum awk df grep id mkdir rm flock true touch dpkg-query"
 NOWHERE = "https://nowhere.invalid/simple"
@@ -67,7 +68,7 @@ class Machine:
     def lce(self, *argv: str, cwd: Path | None = None, **env: str) -> Ended:
         return start(self.project / "lce", *argv, env=self.env | env, cwd=cwd or self.home)
 
-    def told(self) -> list[dict[str, object]]:
+    def told(self) -> list[Any]:
         return [json.loads(line) for line in self.seen.read_text().splitlines()] if self.seen.exists() else []
 
     def version(self, name: str) -> str:
@@ -147,6 +148,28 @@ def test_hands_over_as_it_was_called(used: tuple[Machine, list[Ended]], tmp_path
     told = machine.told()[-1]
     assert (told["argv"], told["cwd"]) == (words, str(elsewhere))
     assert str(elsewhere) not in str(told["path"])
+
+
+def test_gui_opens_with_the_workbench_chosen(used: tuple[Machine, list[Ended]], tmp_path: Path) -> None:
+    machine, _ = used
+    macro = tmp_path / "my macro.FCMacro"
+    macro.write_text(
+        "import FreeCADGui, lce_workbench, os, sys\n"
+        "from PySide import QtCore\n"
+        "def told():\n"
+        "    with open(os.environ['SEEN'], 'a') as seen:\n"
+        '        print(\'["%s", "%s"]\' % (FreeCADGui.activeWorkbench().name(), lce_workbench.ROOT), file=seen)\n'
+        "    sys.exit(7)\n"
+        "QtCore.QTimer.singleShot(500, told)\n"
+    )
+    path = os.pathsep.join([str(machine.bin), os.environ["PATH"]])
+    with display() as screen:
+        env = environment(machine.home / "freecad", SEEN=str(machine.seen), DISPLAY=screen, PATH=path)
+        ended = start(machine.project / "lce", "gui", macro, env=env, cwd=tmp_path)
+    assert ended.code == 7, ended.err
+    assert "Traceback" not in ended.out + ended.err
+    assert machine.told()[-1] == ["LceWorkbench", str(machine.project)]
+    assert not (machine.home / "freecad" / "Mod").exists()  # nothing of ours is left with the user
 
 
 def test_new_pins_are_installed_in_place(used: tuple[Machine, list[Ended]]) -> None:
