@@ -18,7 +18,8 @@ import FreeCAD
 early = "numpy" in sys.modules
 import lce_solver, lce_workbench, solver, tests
 
-facts = {"early_numpy": early, "files": [m.__file__ for m in (lce_solver, lce_workbench, solver, tests)]}
+files = [m.__file__ for m in (lce_solver, lce_workbench, solver, tests)]
+facts = {"early_numpy": early, "files": files, "path": list(sys.path)}
 """
 WINDOW = """
 import FreeCADGui
@@ -29,9 +30,9 @@ def told():
         FreeCADGui.activateWorkbench("LceWorkbench")
     bench = FreeCADGui.listWorkbenches()["LceWorkbench"]
     path = list(sys.path)
-    import ezdxf, numpy
+    import ezdxf, numpy  # after the path is told: some packages append to it
     facts.update(name=FreeCADGui.activeWorkbench().name(), menu=bench.MenuText, tip=bench.ToolTip, icon=bench.Icon,
-                 path=path, numpy=numpy.__file__)
+                 last=path[-1], numpy=numpy.__file__)
     end()
 
 QtCore.QTimer.singleShot(500, told)
@@ -50,14 +51,21 @@ def write(path: Path, text: str = "") -> Path:
     return path
 
 
-def home_with_addons(home: Path, ours: str, other: str) -> Path:
-    """A user's FreeCAD folder with this checkout and with an addon that has packages `solver` and `tests`."""
+def addons(tmp: Path, front: str) -> tuple[Path, list[str | Path]]:
+    """Ours, and an addon that has packages `solver` and `tests`; the one named comes first on FreeCAD's sys.path.
+
+    What stands in the user's Mod folder is loaded in an order of the file system's; what `-M` names is loaded after
+    it, and so comes before it on the path.
+    """
     for name in ("solver", "tests"):
-        write(home / "Mod" / other / name / "__init__.py", "theirs = True\n")
-    # It imports them early, as addons do; whose it gets must not depend on us.
-    write(home / "Mod" / other / "Init.py", "import solver, tests\nassert solver.theirs and tests.theirs\n")
-    (home / "Mod" / ours).symlink_to(ROOT)
-    return home
+        write(tmp / "other" / name / "__init__.py", "theirs = True\n")
+    places = {"ours": ROOT, "theirs": tmp / "other"}
+    first = places.pop(front)
+    (behind,) = places.values()
+    home = tmp / "user home"
+    (home / "Mod").mkdir(parents=True)
+    (home / "Mod" / "Addon").symlink_to(behind)
+    return home, ["-M", first]
 
 
 def facts(ended: Ended, path: Path) -> dict[str, Any]:
@@ -68,12 +76,14 @@ def facts(ended: Ended, path: Path) -> dict[str, Any]:
     return found
 
 
-def assert_whose(found: dict[str, Any], home: Path, other: str) -> None:
-    solver, workbench, *theirs = (Path(file) for file in found["files"])
-    assert solver.resolve() == ROOT / "solver" / "lce_solver" / "__init__.py"
-    assert workbench.resolve() == ROOT / "lce_workbench" / "__init__.py"
-    assert theirs == [home / "Mod" / other / name / "__init__.py" for name in ("solver", "tests")]
+def assert_whose(found: dict[str, Any], tmp: Path, front: str) -> None:
+    solver, workbench, *theirs = (Path(file).resolve() for file in found["files"])
+    assert solver == ROOT / "solver" / "lce_solver" / "__init__.py"
+    assert workbench == ROOT / "lce_workbench" / "__init__.py"
+    assert theirs == [tmp / "other" / name / "__init__.py" for name in ("solver", "tests")]
     assert not found["early_numpy"]  # whose numpy is loaded stays the choice of who needs one
+    path = [Path(entry).resolve() for entry in found["path"]]
+    assert (path.index(ROOT) < path.index(tmp / "other")) == (front == "ours")
 
 
 @pytest.fixture(scope="module")
@@ -82,30 +92,28 @@ def screen() -> Iterator[str]:
         yield name
 
 
-ORDERS = [("LCEMold", "AnAddon"), ("LCEMold", "ZAddon")]
-
-
-@pytest.mark.parametrize(("ours", "other"), ORDERS)
-def test_loads_without_a_window(tmp_path: Path, ours: str, other: str) -> None:
-    home = home_with_addons(tmp_path / "user home", ours, other)
+@pytest.mark.parametrize("front", ["ours", "theirs"])
+def test_loads_without_a_window(tmp_path: Path, front: str) -> None:
+    home, option = addons(tmp_path, front)
     script = write(tmp_path / "facts.FCMacro", FACTS + END + "end()\n")
-    ended = start("freecadcmd", script, env=environment(home, FACTS=str(tmp_path / "facts")), cwd=tmp_path)
-    assert_whose(facts(ended, tmp_path / "facts"), home, other)
+    env = environment(home, FACTS=str(tmp_path / "facts"))
+    found = facts(start("freecadcmd", script, *option, env=env, cwd=tmp_path), tmp_path / "facts")
+    assert_whose(found, tmp_path, front)
 
 
-@pytest.mark.parametrize(("ours", "other"), ORDERS)
-def test_opens_in_the_window(tmp_path: Path, screen: str, ours: str, other: str) -> None:
-    home = home_with_addons(tmp_path / "user home", ours, other)
+@pytest.mark.parametrize("front", ["ours", "theirs"])
+def test_opens_in_the_window(tmp_path: Path, screen: str, front: str) -> None:
+    home, option = addons(tmp_path, front)
     script = write(tmp_path / "facts.FCMacro", FACTS + END + WINDOW)
     env = environment(home, FACTS=str(tmp_path / "facts"), DISPLAY=screen)
-    found = facts(start("freecad", script, env=env, cwd=tmp_path), tmp_path / "facts")
-    assert_whose(found, home, other)
+    found = facts(start("freecad", script, *option, env=env, cwd=tmp_path), tmp_path / "facts")
+    assert_whose(found, tmp_path, front)
     assert found["name"] == "LceWorkbench"
     assert found["menu"] == "LCE Mold"
     assert "molds" in found["tip"]
     assert ET.parse(found["icon"]).getroot().tag == "{http://www.w3.org/2000/svg}svg"
     # Ours come last: FreeCAD's own numpy stays everybody's.
-    assert Path(found["path"][-1]).parts[-5:-2] == (ROOT.name, ".venv", "lib")
+    assert Path(found["last"]).is_relative_to(ROOT / ".venv")
     assert ".venv" not in found["numpy"]
 
 
