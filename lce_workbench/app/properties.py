@@ -85,15 +85,15 @@ def properties(section: type) -> Iterator[Property]:
         )
 
 
-def declare(obj: Any, section: type) -> None:
-    """Add the properties of a section that ``obj`` does not have yet, with their defaults."""
+def declare(obj: Any, section: type, group: str) -> None:
+    """Add the properties of a section that ``obj`` does not have yet, with their defaults, under the heading ``group``."""
     defaults = section()
     for prop in properties(section):
         if prop.name in obj.PropertiesList:
             continue
         if prop.given:
-            obj.addProperty("App::PropertyBool", prop.given, section.__name__, f"Not the default: {prop.doc}")
-        obj.addProperty(prop.type, prop.name, section.__name__, prop.doc)
+            obj.addProperty("App::PropertyBool", prop.given, group, f"Not the default: {prop.doc}")
+        obj.addProperty(prop.type, prop.name, group, prop.doc)
         if prop.choices:
             setattr(obj, prop.name, list(prop.choices))
         prop.write(obj, getattr(defaults, prop.field))
