@@ -1,8 +1,36 @@
-"""The FreeCAD document of the cell, made and read without a window."""
+"""The FreeCAD document of the cell: written and edited without a window, opened with one, with and without our addon."""
 
+import hashlib
+import zipfile
+from dataclasses import fields, replace
+
+import document_steps as steps
+import numpy as np
 import pytest
+import sheets
+from freecad_call import FreeCAD
+from in_freecad import display
+from PIL import Image
 
-from app import document_steps as steps
+from lce_workbench.core import jobfile
+from lce_workbench.core.cell import assemble
+from lce_workbench.core.channels import hatch
+from lce_workbench.core.domains import PLATES, partition
+from lce_workbench.core.frame import arrange
+from lce_workbench.core.job import Job
+from lce_workbench.core.marks import marks
+from lce_workbench.outputs import write_design
+
+JOB = """
+[target]
+surface = "saddle"
+[sheet]
+width_mm = 2.2
+gap_um = 100.0
+[channels]
+width_um = 2.0
+spacing_um = 3.0
+"""
 
 JOBS = {
     "defaults": '[target]\nsurface = "face"',
@@ -50,7 +78,184 @@ step_domains = [0, 17, 4]
 }
 
 
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """An output folder with the document of a small cell."""
+    out = tmp_path_factory.mktemp("an output")
+    (out / "job.toml").write_text(JOB)
+    write_design(sheets.design(), out / "design.npz")
+    freecad = FreeCAD(tmp_path_factory.mktemp("writer"))
+    assert freecad.console(steps.run, folder=out) == ["", 0]
+    return out
+
+
+@pytest.fixture(scope="module")
+def fcstd(folder):
+    return folder / "cad" / "cell.FCStd"
+
+
+@pytest.fixture
+def freecad(tmp_path):
+    return FreeCAD(tmp_path / "home")
+
+
+@pytest.fixture(scope="module")
+def screen():
+    with display() as name:
+        yield name
+
+
+def prisms(design, job):
+    """Name of a body -> its prisms, by the way the pipeline goes: all channels of the sheet."""
+    domains, frame = partition(design), arrange(design.uv, job)
+    channels = {plate: hatch(domains, plate, job.channels) for plate in PLATES}
+    drawn = {plate: np.concatenate([*marks(frame, plate, job.marks).values()]) for plate in PLATES}
+    cell = assemble(frame, job, domains, drawn, channels)
+    found = {prism.name: [prism] for prism in cell.parts}
+    for prism in cell.channels:
+        found.setdefault(prism.group, []).append(prism)
+    return {"".join(word.capitalize() for word in name.split("_")): parts for name, parts in found.items()}
+
+
+def assert_is_cell(bodies, design, job):
+    """The bodies are the prisms: as many solids, their volume and their place."""
+    expected = prisms(design, job)
+    assert bodies.keys() == expected.keys()
+    for name, parts in expected.items():
+        body, points = bodies[name], np.concatenate([part.outline for part in parts])
+        assert body["valid"]
+        assert body["solids"] == len(parts)
+        assert body["volume"] == pytest.approx(sum(part.volume for part in parts), rel=1e-9)
+        assert body["low"] == pytest.approx([*points.min(axis=0), min(part.z0 for part in parts)], abs=1e-6)
+        assert body["high"] == pytest.approx([*points.max(axis=0), max(part.z1 for part in parts)], abs=1e-6)
+
+
 @pytest.mark.parametrize("toml", JOBS.values(), ids=JOBS.keys())
 def test_every_section_survives_properties_and_file_exactly(freecad, tmp_path, toml):
     before, after = freecad.console(steps.round_trip, toml=toml, path=tmp_path / "job.FCStd")
     assert after == before
+
+
+@pytest.fixture(scope="module")
+def opened(fcstd, tmp_path_factory):
+    return FreeCAD(tmp_path_factory.mktemp("reader")).console(steps.read_only, path=fcstd)
+
+
+def test_the_document_is_a_tree_of_named_parts(opened):
+    tree = opened["tree"]
+    assert tree["Cell"] == []
+    for inside in ("Parameters", "Design", "BottomPlate", "TopPlate", "Spacer", "Sheet", "ChannelsTop"):
+        assert tree[inside] == ["Cell"]
+    assert tree["BottomLand"] == ["BottomPlate"]
+    assert tree["SpacerLeft"] == ["Spacer"]
+    assert sum("Parameters" in containers for containers in tree.values()) == len(fields(Job))
+
+
+def test_bodies_are_the_prisms_of_the_cell(opened):
+    assert_is_cell(opened["bodies"], sheets.design(), jobfile.parse(JOB))
+
+
+def test_an_edit_of_depth_and_gap_moves_plates_spacer_film_and_channels(freecad, fcstd, tmp_path):
+    changes = [("ChannelsParameters", "Depth", "1.5 um"), ("SheetParameters", "Gap", "150 um")]
+    found = freecad.console(steps.edit, path=fcstd, changes=changes, save_as=tmp_path / "edited.FCStd")
+    design = sheets.design()
+    thicker = replace(design, dtheta=design.dtheta * 1.5, thickness=0.15)  # the twist is linear in the thickness
+    job = jobfile.parse(JOB, settings=["channels.depth_um=1.5", "sheet.gap_um=150"])
+    for state in ("edited", "reopened", "recomputed"):
+        assert found[state]["invalid"] == {}
+        assert_is_cell(found[state]["bodies"], thicker, job)
+
+
+def test_volumes_follow_depth_and_gap(freecad, fcstd, opened):
+    changes = [("ChannelsParameters", "Depth", "1.8 um"), ("SheetParameters", "Gap", "0.25 mm")]
+    found = freecad.console(steps.attempt, path=fcstd, cases={change[0]: [change] for change in changes})
+    for case, ratio, names in (
+        ("ChannelsParameters", 3.0, ("BottomLand", "TopLand", "ChannelsBottom", "ChannelsTop")),
+        ("SheetParameters", 2.5, ("SpacerLeft", "SpacerRight", "Sheet")),
+    ):
+        for name, body in found["said"][case]["bodies"].items():
+            expected = opened["bodies"][name]["volume"] * (ratio if name in names else 1.0)
+            turned = case == "SheetParameters" and name in {"BottomLand", "TopLand", "ChannelsBottom", "ChannelsTop"}
+            assert body["volume"] == pytest.approx(expected, rel=0.05 if turned else 1e-9)
+    assert found["end"]["invalid"] == {}
+    assert_is_cell(found["end"]["bodies"], sheets.design(), jobfile.parse(JOB))
+
+
+IMPOSSIBLE = {
+    "no depth": ("ChannelsParameters", "Depth", 0.0, "ChannelsParameters", "channels.depth_um is 0 um; it must be"),
+    "gap of 6 mm": ("SheetParameters", "Gap", "6 mm", "SheetParameters", "sheet.gap_um is 6000 um; it must be at most"),
+    "glass of 3 mm": ("PlatesParameters", "Width", "3 mm", "BottomGlass", "plates.width_mm x height_mm = 3 x"),
+    "domain 999": ("OutputParameters", "StepDomains", [999], "ChannelsTop", "domain 999 does not exist"),
+    "another sheet": ("SheetParameters", "Width", "3 mm", "Design", "sheet.width_mm is now 3.0, but this design was"),
+    "another target": ("TargetParameters", "Flip", True, "Design", "target.flip is now True, but this design was"),
+}
+
+
+def test_an_impossible_value_marks_an_object_with_one_sentence(freecad, fcstd):
+    cases = {case: [change[:3]] for case, change in IMPOSSIBLE.items()}
+    cases["glass of 3 mm"].append(("PlatesParameters", "WidthGiven", True))
+    found = freecad.console(steps.attempt, path=fcstd, cases=cases)
+    for case, (*_, marked, sentence) in IMPOSSIBLE.items():
+        assert sentence in found["said"][case]["invalid"][marked]
+        assert_is_cell(found["said"][case]["bodies"], sheets.design(), jobfile.parse(JOB))  # all stays as it was
+    assert found["end"]["invalid"] == {}
+    assert_is_cell(found["end"]["bodies"], sheets.design(), jobfile.parse(JOB))
+
+
+def test_two_runs_write_the_same_bytes(freecad, folder, fcstd, tmp_path):
+    digest = hashlib.sha256(fcstd.read_bytes()).digest()
+    other = tmp_path / "another place"
+    other.mkdir()
+    for name in ("job.toml", "design.npz"):
+        (other / name).write_bytes((folder / name).read_bytes())
+    assert freecad.console(steps.run, folder=other) == ["", 0]
+    assert hashlib.sha256((other / "cad" / "cell.FCStd").read_bytes()).digest() == digest
+
+
+def test_another_job_is_another_document_with_another_identity(freecad, folder, fcstd, tmp_path):
+    (tmp_path / "job.toml").write_text(JOB.replace("100.0", "150.0"))
+    (tmp_path / "design.npz").write_bytes((folder / "design.npz").read_bytes())
+    assert freecad.console(steps.run, folder=tmp_path) == ["", 0]
+    assert identity(tmp_path / "cad" / "cell.FCStd") != identity(fcstd)
+
+
+def identity(fcstd):
+    with zipfile.ZipFile(fcstd) as archive:
+        text = archive.read("Document.xml").decode()
+    return [part.split('"')[0] for part in text.split('<Uuid value="')[1:]]
+
+
+def test_a_fault_is_one_sentence_and_leaves_no_file(freecad, folder, tmp_path):
+    (tmp_path / "design.npz").write_bytes((folder / "design.npz").read_bytes())
+    (tmp_path / "job.toml").write_text(JOB + "[plates]\nwidth_mm = 3.0\n")
+    sentence, code = freecad.console(steps.run, folder=tmp_path)
+    assert sentence.startswith("plates.width_mm x height_mm = 3 x")
+    assert code == 2
+    assert list((tmp_path / "cad").iterdir()) == []
+
+
+def test_the_document_stands_alone_without_scipy(freecad, fcstd, tmp_path):
+    alone = tmp_path / "alone.FCStd"
+    alone.write_bytes(fcstd.read_bytes())
+    found = freecad.console(steps.edit_without_scipy, path=alone, changes=[("ChannelsParameters", "Depth", "1 um")])
+    assert found["invalid"] == {}
+    assert_is_cell(found["bodies"], sheets.design(), jobfile.parse(JOB, settings=["channels.depth_um=1"]))
+
+
+@pytest.mark.parametrize("addon", [True, False], ids=["with our addon", "without"])
+def test_it_opens_visible_and_coloured_in_the_window(screen, fcstd, opened, tmp_path, addon):
+    freecad = FreeCAD(tmp_path / "home", addon=addon)
+    shown = freecad.window(screen, steps.look, path=fcstd, picture=tmp_path / "view.png")
+    expected = prisms(sheets.design(), jobfile.parse(JOB))
+    for name, parts in expected.items():
+        view = shown[name]
+        assert view["visible"]
+        assert view["colour"][:3] == pytest.approx(parts[0].colour, abs=1 / 255)
+        assert view["transparency"] == round(100 * (1 - parts[0].opacity))
+    for name in opened["tree"]:
+        assert shown[name]["visible"]
+    assert ("View" in {view["proxy"] for view in shown.values()}) == addon
+    if addon:
+        assert "Traceback" not in freecad.said
+    picture = np.asarray(Image.open(tmp_path / "view.png").convert("RGB")).astype(int)
+    assert np.mean(np.ptp(picture, axis=2) > 20) > 0.1  # a tenth of the view is coloured, not grey or white
