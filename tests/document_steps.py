@@ -77,8 +77,12 @@ def read_only(path):
 def recomputed(doc):
     """Recompute, measure, and name the objects that are invalid with their sentences."""
     doc.recompute()
-    invalid = {o.Name: o.getStatusString() for o in doc.Objects if not o.isValid()}
-    return {"bodies": bodies(doc), "invalid": invalid}
+    return {"bodies": bodies(doc), "invalid": invalid(doc)}
+
+
+def invalid(doc):
+    """Name -> sentence of the objects that FreeCAD marks."""
+    return {o.Name: o.getStatusString() for o in doc.Objects if not o.isValid()}
 
 
 def change(doc, changes):
@@ -108,12 +112,17 @@ def edit(path, changes, save_as):
 
 
 def attempt(path, cases):
-    """Make each change on its own and undo it; return what FreeCAD said to each, and the state at the end."""
+    """Make each change on its own and undo it; return what FreeCAD said, and the state at the end."""
     doc = open_document(path)
+    before = {o.Name: o.Shape for o in doc.findObjects("Part::FeaturePython")}
     said = {}
     for case, changes in cases.items():
         former = change(doc, changes)
-        said[case] = recomputed(doc)
+        doc.recompute()
+        said[case] = {
+            "invalid": invalid(doc),
+            "moved": [name for name, shape in before.items() if not doc.getObject(name).Shape.isSame(shape)],
+        }
         change(doc, former)
     return {"said": said, "end": recomputed(doc)}
 
@@ -128,7 +137,7 @@ def edit_without_scipy(path, changes):
     return recomputed(doc)
 
 
-def look(path, picture):
+def looks(path, picture):
     """Open in the window; return what each view provider shows, and save a picture of the view as it opens."""
     import FreeCAD
     import FreeCADGui
@@ -137,13 +146,27 @@ def look(path, picture):
     for _ in range(20):
         FreeCADGui.updateGui()
     FreeCADGui.activeDocument().activeView().saveImage(picture, 800, 600, "White")
-    shown = {}
+    found = {}
     for obj in doc.Objects:
         view = obj.ViewObject
-        shown[obj.Name] = {
+        found[obj.Name] = {
             "visible": view.Visibility,
             "colour": getattr(view, "ShapeColor", None),
             "transparency": getattr(view, "Transparency", None),
             "proxy": type(getattr(view, "Proxy", None)).__name__,
         }
-    return shown
+    return found
+
+
+def looks_and_edit(path, picture, changes, save_as, other, other_picture):
+    """Look, edit, recompute and save in the window; then look at another document."""
+    import FreeCAD
+
+    found = {"first": looks(path, picture)}
+    doc = FreeCAD.ActiveDocument
+    change(doc, changes)
+    doc.recompute()
+    found["invalid"] = invalid(doc)
+    doc.saveAs(save_as)
+    FreeCAD.closeDocument(doc.Name)
+    return found | {"other": looks(other, other_picture)}

@@ -200,7 +200,17 @@ class Body(Proxy):
         shapes = [solid(prism) for prism in prisms]
         obj.Shape = shapes[0] if len(shapes) == 1 else Part.makeCompound(shapes)
         obj.Colour = prisms[0].colour
-        obj.Transparency = round(100 * (1 - prisms[0].opacity))
+        obj.Transparency = _transparency(prisms[0])
+
+
+def _transparency(prism: Prism) -> int:
+    """Per cent; the top plate is fainter, because the document opens seen from above."""
+    opacity = prism.opacity * (FAINT if prism.group == "top_plate" else 1.0)
+    return round(100 * (1 - opacity))
+
+
+FAINT = 0.2
+"""How much of its opacity the top plate keeps, so that film and channels are seen through it."""
 
 
 def prisms_of(obj: Any) -> list[Prism]:

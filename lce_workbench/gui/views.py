@@ -4,21 +4,23 @@ from __future__ import annotations
 
 from typing import Any
 
-ICONS = {
-    "Parameters": ":/icons/Std_DlgParameter.svg",
-}
-
 
 class View:
-    """Icon of an object. Like the proxies it holds no state."""
-
-    OURS = True
+    """The view of an object. Like the proxies it holds no state; FreeCAD saves what the user changes about the looks."""
 
     def __init__(self, vobj: Any) -> None:
+        """Show an object that has no looks yet: a new one, or one from a file that was saved without a window."""
         vobj.Proxy = self
+        vobj.Visibility = True
+        obj = vobj.Object
+        if "Colour" in obj.PropertiesList:
+            vobj.ShapeColor, vobj.Transparency = obj.Colour, obj.Transparency
+        for container in obj.InListRecursive:
+            if "Group" in container.PropertiesList:
+                container.ViewObject.Visibility = True
 
     def attach(self, vobj: Any) -> None:
-        """FreeCAD calls this when the view comes to life, on creation and on opening."""
+        """FreeCAD calls this when the view comes to life."""
 
     def dumps(self) -> None:
         """Nothing to save (FreeCAD 0.21 and later)."""
