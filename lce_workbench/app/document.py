@@ -14,7 +14,7 @@ import FreeCAD
 from lce_solver.errors import InputError
 from lce_workbench.app.fcstd import Look, finish, isometric
 from lce_workbench.app.geometry import assembled
-from lce_workbench.app.objects import CELL_SECTIONS, DESIGN_SECTIONS, Body, DesignData, Parameters, made_for
+from lce_workbench.app.objects import CELL_SECTIONS, DESIGN_SECTIONS, Body, DesignData, Parameters, is_fine, made_for
 from lce_workbench.app.properties import write
 from lce_workbench.core import jobfile
 from lce_workbench.core.job import Job
@@ -143,9 +143,4 @@ AIDS = ("App::Origin", "App::Line", "App::Plane")
 def _look(obj: Any) -> Look:
     if "Colour" not in obj.PropertiesList:
         return Look(getattr(getattr(obj, "Proxy", None), "VIEW", ""))
-    many = len(obj.Shape.Solids) > 1 or len(obj.Shape.Faces) > MANY_FACES
-    return Look(obj.Proxy.VIEW, obj.Colour[:3], obj.Transparency, edges=not many)
-
-
-MANY_FACES = 100
-"""A shape with more faces is drawn without its edges."""
+    return Look(obj.Proxy.VIEW, obj.Colour[:3], obj.Transparency, edges=not is_fine(obj.Shape))

@@ -213,6 +213,11 @@ FAINT = 0.2
 """How much of its opacity the top plate keeps, so that film and channels are seen through it."""
 
 
+def is_fine(shape: Any) -> bool:
+    """Whether the edges of a shape would hide it: a field of channels turns black."""
+    return len(shape.Faces) > 100
+
+
 def prisms_of(obj: Any) -> list[Prism]:
     """The prisms that a body consists of."""
     cell = assembled(Path(obj.Design.File), job_of(obj.Parameters))

@@ -86,7 +86,7 @@ def properties(section: type) -> Iterator[Property]:
 
 
 def declare(obj: Any, section: type, group: str) -> None:
-    """Add the properties of a section that ``obj`` does not have yet, with their defaults, under the heading ``group``."""
+    """Add the properties of a section that ``obj`` does not have yet, with defaults, under the heading ``group``."""
     defaults = section()
     for prop in properties(section):
         if prop.name in obj.PropertiesList:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from lce_workbench.app.objects import is_fine
+
 
 class View:
-    """The view of an object. Like the proxies it holds no state; FreeCAD saves what the user changes about the looks."""
+    """The view of an object. It holds no state; FreeCAD saves what the user changes about the looks."""
 
     def __init__(self, vobj: Any) -> None:
         """Show an object that has no looks yet: a new one, or one from a file that was saved without a window."""
@@ -15,6 +17,7 @@ class View:
         obj = vobj.Object
         if "Colour" in obj.PropertiesList:
             vobj.ShapeColor, vobj.Transparency = obj.Colour, obj.Transparency
+            vobj.DisplayMode = "Shaded" if is_fine(obj.Shape) else "Flat Lines"
         for container in obj.InListRecursive:
             if "Group" in container.PropertiesList:
                 container.ViewObject.Visibility = True
