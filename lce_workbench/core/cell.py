@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lce_solver.errors import InputError
-from lce_solver.surface import boundary_loops
+from lce_solver.topology import boundary_loops
 from lce_solver.types import Floats
 from lce_workbench.core.channels import Channels, corners
 from lce_workbench.core.domains import PLATES, SIDE, Domains, Plate, signed_area

@@ -6,8 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from lce_solver.types import Floats, Ints
 from lce_workbench.core.mask import nanometres
@@ -32,12 +30,21 @@ def merged(polygons: Sequence[Floats]) -> list[Floats]:
     low = nanometres(np.array([p.min(axis=0) for p in polygons]))
     high = nanometres(np.array([p.max(axis=0) for p in polygons]))
     meets = np.all((low[:, None] <= high) & (low <= high[:, None]), axis=2)
-    n, group = connected_components(coo_matrix(meets), directed=False)
-    alone = np.bincount(group, minlength=n) == 1
+    group = _groups(meets)
+    n = int(group.max()) + 1
+    alone = np.bincount(group) == 1
     return [
         polygons[int(np.argmax(group == g))] if alone[g] else _outline(low[group == g], high[group == g])
         for g in range(n)
     ]
+
+
+def _groups(meets: Bools) -> Ints:
+    """(n,) group of each polygon under the relation (n, n), from 0; NumPy alone, because it runs inside FreeCAD too."""
+    label = np.arange(len(meets))
+    while np.any((least := np.where(meets, label, len(label)).min(axis=1)) != label):
+        label = least
+    return np.unique(label, return_inverse=True)[1]
 
 
 def _outline(low: NDArray[np.int32], high: NDArray[np.int32]) -> Floats:

@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from lce_solver.types import Ints
 
@@ -105,6 +103,10 @@ def fans(faces: Ints) -> Ints:
 
 def _components(rows: Ints, columns: Ints, size: int) -> Ints:
     """(size,) component of each node of an undirected graph, numbered in the order of their first nodes."""
+    # here, because boundaries are also asked for inside FreeCAD, where Debian may have NumPy alone
+    from scipy.sparse import coo_array  # noqa: PLC0415
+    from scipy.sparse.csgraph import connected_components  # noqa: PLC0415
+
     graph = coo_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(size, size))
     label = connected_components(graph.tocsr(), directed=False)[1]
     _, first, inverse = np.unique(label, return_index=True, return_inverse=True)
