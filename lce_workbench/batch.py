@@ -33,9 +33,17 @@ def run(argv: list[str]) -> int:
     except EnvironmentFault as fault:
         print(f"lce: {fault}", file=sys.stderr)
         return fault.exit_code
-    from lce_workbench.cli import main
+    from lce_workbench.cli import guarded, main
 
-    return main(argv)
+    return guarded(_document, argv[1:]) if argv[:1] == ["document"] else main(argv)
+
+
+def _document(argv: list[str]) -> int:
+    """Write the FreeCAD document of the output folder ``argv[0]``; the pipeline's own call."""
+    from lce_workbench.app.document import run_document
+
+    run_document(Path(argv[0]))
+    return 0
 
 
 def end() -> None:

@@ -34,11 +34,21 @@ class Parser(argparse.ArgumentParser):
 
 def main(argv: list[str]) -> int:
     """Run one command; return the exit code of the contract."""
+    return guarded(_command, argv)
+
+
+def _command(argv: list[str]) -> int:
+    args = _parser().parse_args(argv)
+    code: int = args.run(args)
+    return code
+
+
+def guarded(command: Callable[[list[str]], int], argv: list[str]) -> int:
+    """Run ``command`` and turn whatever it raises into one sentence and an exit code."""
     debug = "--debug" in argv
     signal.signal(signal.SIGTERM, _interrupt)
     try:
-        args = _parser().parse_args(argv)
-        code: int = args.run(args)
+        return command(argv)
     except LceError as fault:
         return _fail(str(fault), fault.exit_code, debug=debug)
     except KeyboardInterrupt:
@@ -47,11 +57,8 @@ def main(argv: list[str]) -> int:
         return _fail("out of memory; take larger domains or a smaller sheet", 4, debug=debug)
     except OSError as fault:
         return _fail(f"{fault.filename or 'a file'}: {fault.strerror or fault}", 4, debug=debug)
-    except Exception as fault:  # a fault of ours: still one sentence, the traceback on request
-        return _fail(
-            f"internal fault ({type(fault).__name__}: {fault}); run with --debug and report it", 4, debug=debug
-        )
-    return code
+    except Exception as fault:
+        return _fail(f"internal fault ({type(fault).__name__}: {fault}); run with --debug and report it", 4, debug=debug)
 
 
 def _interrupt(*_: object) -> NoReturn:
