@@ -58,7 +58,8 @@ def guarded(command: Callable[[list[str]], int], argv: list[str]) -> int:
     except OSError as fault:
         return _fail(f"{fault.filename or 'a file'}: {fault.strerror or fault}", 4, debug=debug)
     except Exception as fault:
-        return _fail(f"internal fault ({type(fault).__name__}: {fault}); run with --debug and report it", 4, debug=debug)
+        sentence = f"internal fault ({type(fault).__name__}: {fault}); run with --debug and report it"
+        return _fail(sentence, 4, debug=debug)
 
 
 def _interrupt(*_: object) -> NoReturn:

@@ -9,7 +9,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -38,6 +38,7 @@ def staged(out: Path, *, keep: Path | None = None) -> Iterator[Path]:
     """
     out = Path(os.path.abspath(out))  # noqa: PTH100 - resolve() would replace a link by its target
     _refuse_foreign(out)
+    made = [parent for parent in out.parents if not parent.exists()]
     with told(out):
         out.parent.mkdir(parents=True, exist_ok=True)
         stage = Path(tempfile.mkdtemp(prefix=f".{out.name}.", suffix=".partial", dir=out.parent))
@@ -50,6 +51,9 @@ def staged(out: Path, *, keep: Path | None = None) -> Iterator[Path]:
             _exchange(stage, out)
     finally:
         shutil.rmtree(stage, ignore_errors=True)
+        with suppress(OSError):  # not empty: it holds the result
+            for parent in made:
+                parent.rmdir()
 
 
 def _refuse_foreign(out: Path) -> None:

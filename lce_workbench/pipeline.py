@@ -65,6 +65,7 @@ def build(job: Job, base: Path, out: Path, names: Sequence[str], progress: Progr
     LceError
         A fault that leaves ``out`` as it was.
     """
+    _require_formats(job)
     former: dict[str, Any] = {} if names[0] == "design" else read_manifest(out)
     records = [r for r in former.get("findings", ()) if r["stage"] not in names]
     with staged(out, keep=out if former else None) as folder:
@@ -85,6 +86,13 @@ def build(job: Job, base: Path, out: Path, names: Sequence[str], progress: Progr
             },
         )
     return code
+
+
+def _require_formats(job: Job) -> None:
+    for name in job.output.masks:
+        if name not in EXPORTERS:
+            msg = f"output.masks: format {name!r} is unknown; known are {', '.join(EXPORTERS)}"
+            raise InputError(msg)
 
 
 def exit_code(records: Sequence[Mapping[str, Any]]) -> int:
@@ -110,6 +118,7 @@ def run_design(run: Run) -> Findings:
         max_iterations=job.solver.max_iterations,
         progress=run.progress,
     )
+    arrange(result.uv, job)  # a plate that is too small is told before anything is drawn
     (run.folder / "job.toml").write_text(jobfile.dump(rebased(job, run.base, run.folder)), encoding="utf-8")
     write_design(result, run.folder / "design.npz")
     domains = partition(result)
@@ -147,10 +156,6 @@ def sheet_findings(job: Job) -> Findings:
 
 def run_mask(run: Run) -> Findings:
     """Draw both plates: `mask/bottom.*`, `mask/top.*`."""
-    unknown = [name for name in run.job.output.masks if name not in EXPORTERS]
-    if unknown:
-        msg = f"output.masks: format {unknown[0]!r} is unknown; known are {', '.join(EXPORTERS)}"
-        raise InputError(msg)
     plan = fabricable(read_design(run.folder / "design.npz"))
     domains, frame = partition(plan), arrange(plan.uv, run.job)
     (run.folder / "mask").mkdir()

@@ -126,7 +126,7 @@ def test_npz_loads_without_pickle_and_has_the_contract_names(built):
 
 def said(capsys, *argv):
     """Run a command that fails; return its exit code and the one sentence."""
-    code = main([str(word) for word in argv])
+    code = main(["--quiet", *(str(word) for word in argv)])
     lines = capsys.readouterr().err.strip().splitlines()
     assert len(lines) == 1, lines
     return code, lines[0]
