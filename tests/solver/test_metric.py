@@ -105,11 +105,10 @@ def test_rolled_sheet_is_unrolled():
 def test_residual_falls_with_the_mesh(name):
     """A smooth solution exists, so what is left is the mesh: first order."""
     error = []
-    for edge in (0.1, 0.05, 0.025):
-        _, starts = compete(SURFACES[name](edge), LCE, starts=3, stop=Stop(1e-6))
+    for edge in (0.1, 0.05):
+        _, starts = compete(SURFACES[name](edge), LCE, starts=2, stop=Stop(1e-5))
         error.append(min(start.rms for start in starts))
-    rate = np.log2(error[0] / error[2]) / 2
-    assert rate > 0.7, error
+    assert np.log2(error[0] / error[1]) > 0.7, error
 
 
 @pytest.mark.parametrize("change", [moved, lambda s: scaled(s, 1e3), lambda s: scaled(s, 1e-3)])
@@ -243,7 +242,7 @@ def test_progress_runs_to_one_and_can_stop():
 
     def stop(stage, fraction):
         if fraction > 0.3:
-            raise Cancelled("stopped")
+            raise Cancelled
 
     with pytest.raises(Cancelled):
         compete(hill(), LCE, starts=2, progress=stop)
