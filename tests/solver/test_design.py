@@ -1,10 +1,13 @@
 """Designs: size and place of the sheet, invariances, and a finding for everything that can go wrong."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from targets import LCE, flat, hill, line_difference, mirrored, moved, patch, ramp, renumbered, scaled, turned_over
 
 from lce_solver import judge
+from lce_solver.assess import solved
 from lce_solver.design import design
 from lce_solver.errors import InputError
 from lce_solver.geometry import face_areas
@@ -178,6 +181,14 @@ def test_sheet_that_covers_itself_is_an_error_with_its_place():
     assert found.severity is Severity.ERROR
     assert found.value == len(plan.flattening.crossings) > 0
     assert found.where.startswith("outline at (")
+
+
+def test_flipped_triangle_is_an_error_with_its_place(plan):
+    flat = replace(plan.flattening, status=Status.FLIPPED, flipped=[7, 9])
+    found = solved(replace(plan, flattening=flat))
+    assert found.severity is Severity.ERROR
+    assert found.value == 2
+    assert found.where.startswith("triangle 7 at (")
 
 
 @pytest.mark.parametrize(("width", "thickness", "name"), [(0.0, 0.1, "width"), (20.0, np.nan, "thickness")])
