@@ -122,7 +122,7 @@ def compete(
         flat = flatten(rigid, (material.along, material.across), angle, stop, tick=tick)
         results.append((flat, _record(surface, flat, material, angle, bending)))
     progress("flatten", 1.0)
-    return results[_best([start for _, start in results])][0], tuple(start for _, start in results)
+    return results[best([start for _, start in results])][0], tuple(start for _, start in results)
 
 
 def _report(progress: Progress, done: float, share: float, iteration: int) -> None:
@@ -143,7 +143,7 @@ def _record(surface: Surface, flat: Flattening, material: Material, angle: float
     )
 
 
-def _best(starts: list[Start]) -> int:
+def best(starts: list[Start]) -> int:
     """Index of the smallest score among those with the fewest faults; the first of equals."""
     faults = [start.flipped + start.crossings for start in starts]
     valid = [k for k, fault in enumerate(faults) if fault == min(faults)]

@@ -9,10 +9,10 @@ from targets import COOLED, LCE, flat, hill, line_difference, mirrored, moved, p
 from lce_solver import judge
 from lce_solver.errors import Cancelled
 from lce_solver.geometry import face_areas
-from lce_solver.metric import Stop, compete, flatten, lay_flat, local_global
+from lce_solver.metric import Stop, best, compete, flatten, lay_flat, local_global
 from lce_solver.plane import convex_map
 from lce_solver.surfaces import SURFACES
-from lce_solver.types import Material, Status
+from lce_solver.types import Material, Start, Status
 from lce_solver.wirtinger import director, energy, operator, stretched
 
 STRETCHES = (LCE.along, LCE.across)
@@ -105,11 +105,10 @@ def test_rolled_sheet_is_unrolled():
 def test_residual_falls_with_the_mesh(name):
     """A smooth solution exists, so what is left is the mesh: first order."""
     error = []
-    for edge in (0.1, 0.05, 0.025):
-        _, starts = compete(SURFACES[name](edge), LCE, starts=3, stop=Stop(1e-6))
+    for edge in (0.09, 0.03):
+        _, starts = compete(SURFACES[name](edge), LCE, starts=2, stop=Stop(1e-5))
         error.append(min(start.rms for start in starts))
-    rate = np.log2(error[0] / error[2]) / 2
-    assert rate > 0.7, error
+    assert np.log(error[0] / error[1]) / np.log(3) > 0.7, error
 
 
 @pytest.mark.parametrize("change", [moved, lambda s: scaled(s, 1e3), lambda s: scaled(s, 1e-3)])
@@ -234,6 +233,15 @@ def test_best_start_wins():
     assert best.score < 0.9 * max(start.score for start in starts)
 
 
+def test_valid_starts_come_before_good_scores():
+    def start(rms, left, flipped=0, crossings=0):
+        return Start(0.0, Status.CONVERGED, rms, left, flipped, crossings)
+
+    assert best([start(0.01, 0.5, flipped=1), start(0.02, 0.9), start(0.03, 0.5), start(0.001, 0.1, crossings=1)]) == 2
+    assert best([start(0.01, 0.5), start(0.01 - 1e-12, 0.5)]) == 0  # a tie but for rounding
+    assert best([start(0.01, 0.5, flipped=3), start(0.02, 0.5, flipped=1)]) == 1
+
+
 def test_progress_runs_to_one_and_can_stop():
     heard = []
     compete(hill(), LCE, starts=2, progress=lambda stage, fraction: heard.append(fraction))
@@ -243,7 +251,7 @@ def test_progress_runs_to_one_and_can_stop():
 
     def stop(stage, fraction):
         if fraction > 0.3:
-            raise Cancelled("stopped")
+            raise Cancelled
 
     with pytest.raises(Cancelled):
         compete(hill(), LCE, starts=2, progress=stop)
