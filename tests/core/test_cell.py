@@ -6,12 +6,12 @@ import pytest
 from cad.cad_sample import cell, cross, domains, hatched, job
 
 from lce_solver.errors import InputError
-from lce_workbench.core import marks
 from lce_workbench.core.cell import LOOKS, MAX_CUT, MAX_SOLIDS, Prism, assemble, choose
 from lce_workbench.core.channels import Channels
 from lce_workbench.core.domains import PLATES, SIDE, signed_area
 from lce_workbench.core.frame import arrange
 from lce_workbench.core.job import Job
+from lce_workbench.core.marks import marks
 from lce_workbench.core.merge import merged
 
 WHITE = (1.0, 1.0, 1.0)
@@ -260,7 +260,7 @@ def test_what_has_no_simple_outline_is_refused(rectangles):
 def test_the_shipped_marks_are_as_many_recesses_as_they_show_and_keep_their_area():
     frame = arrange(domains(n=100).vertices, Job())
     for plate in PLATES:
-        drawn = marks.polygons(plate, frame, Job().marks)["MARKS"]
+        drawn = np.concatenate([*marks(frame, plate, Job().marks).values()])
         rings = merged(drawn)
         area = sum(signed_area(ring[None])[0] for ring in rings)
         assert area == pytest.approx(signed_area(drawn).sum(), rel=1e-12)
