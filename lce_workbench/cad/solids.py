@@ -22,7 +22,7 @@ def solid(prism: Prism) -> cq.Solid:
     Raises
     ------
     LceError
-        The kernel's volume is not the prism's, so rings cross or run the wrong way.
+        The kernel's volume is not the prism's.
     """
     import cadquery as cq
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
@@ -42,7 +42,7 @@ def require_volume(prism: Prism, volume: float) -> None:
     if not isclose(volume, prism.volume, rel_tol=VOLUME_TOLERANCE):
         msg = (
             f"{prism.name}: the CAD kernel finds {volume:.12g} mm3 instead of {prism.volume:.12g}; "
-            "its outline and holes must not touch or cross"
+            "this is a fault of the program, please report it with the job file"
         )
         raise LceError(msg)
 

@@ -66,8 +66,10 @@ def assembly(name: str, prisms: Sequence[Prism], solids: dict[Prism, cq.Solid]) 
 
 
 def write_step(tree: cq.Assembly, path: Path) -> None:
-    """Write STEP AP214 in mm; its planes need no curves in parameter space, without which it is a third smaller."""
-    if not tree.export(str(path), "STEP", write_pcurves=False):
+    """Write STEP AP214 in mm. Planes need no curves in parameter space; without them the file is half as large."""
+    from cadquery.occ_impl.exporters.assembly import exportAssembly
+
+    if not exportAssembly(tree, str(path), write_pcurves=False):
         raise EnvironmentFault(_unwritten(path))
     path.write_text(canonical(path.read_text("ascii"), path.stem), "ascii", newline="\n")
 

@@ -45,11 +45,11 @@ MAX_CUT = 300
 Colour = tuple[float, float, float]
 
 LOOKS: dict[str, tuple[Colour, float]] = {
-    "glass": ((0.66, 0.84, 0.90), 0.35),
-    "epoxy": ((0.93, 0.79, 0.42), 0.60),
-    "land": ((0.87, 0.60, 0.22), 1.0),
+    "glass": ((0.66, 0.84, 0.90), 0.25),
+    "epoxy": ((0.93, 0.79, 0.42), 0.30),
+    "land": ((0.87, 0.60, 0.22), 0.40),
     "mylar": ((0.56, 0.61, 0.67), 1.0),
-    "film": ((0.80, 0.22, 0.30), 0.90),
+    "film": ((0.80, 0.22, 0.30), 1.0),
     "channel": ((0.16, 0.44, 0.72), 1.0),
 }
 """Material -> colour (red, green, blue in [0, 1], sRGB) and opacity."""
