@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from in_freecad import ROOT, environment, start
+from processes import ROOT, environment, start
 
 CALL = """
 import json, sys, traceback

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import sheets
 from freecad_call import FreeCAD
-from in_freecad import display
 from PIL import Image
+from processes import display
 
 from lce_workbench.core import jobfile
 from lce_workbench.core.job import Job
