@@ -67,11 +67,15 @@ AIDS = ("App::Origin", "App::Line", "App::Plane")
 
 
 def read_only(path):
-    """Tree (name -> containers) and bodies of a document as it opens."""
+    """Tree (name -> containers) and bodies as a document opens, and whether an optional value can be edited."""
     doc = open_document(path)
     objects = [o for o in doc.Objects if o.TypeId not in AIDS]
     tree = {o.Name: [p.Name for p in o.InList if o in getattr(p, "Group", ())] for o in objects}
-    return {"tree": tree, "bodies": bodies(doc)}
+    plates = doc.PlatesParameters
+    modes = [plates.getEditorMode("Width")]
+    plates.WidthGiven = True
+    modes.append(plates.getEditorMode("Width"))
+    return {"tree": tree, "bodies": bodies(doc), "modes": modes}
 
 
 def recomputed(doc):
@@ -101,10 +105,12 @@ def edit(path, changes, save_as):
     doc = open_document(path)
     change(doc, changes)
     found = {"edited": recomputed(doc)}
+    doc.ChannelsParameters.removeProperty("Guard")  # as in a file from before this parameter
     doc.saveAs(save_as)
     FreeCAD.closeDocument(doc.Name)
     doc = open_document(save_as)
-    found["reopened"] = {"bodies": bodies(doc), "invalid": {}}
+    found["reopened"] = {"bodies": bodies(doc), "invalid": invalid(doc)}
+    found["guard"] = doc.ChannelsParameters.Guard.Value
     for obj in doc.Objects:
         obj.touch()
     found["recomputed"] = recomputed(doc)

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from in_freecad import ROOT, environment, start
+from processes import ROOT, environment, start
 
 CALL = """
 import json, sys, traceback
@@ -35,6 +35,13 @@ def work():
 QtCore.QTimer.singleShot(300, work)
 """
 
+SETTINGS = """<?xml version="1.0" encoding="UTF-8"?>
+<FCParameters><FCParamGroup Name="Root"><FCParamGroup Name="BaseApp"><FCParamGroup Name="Preferences">
+<FCParamGroup Name="General"><FCText Name="AutoloadModule">NoneWorkbench</FCText></FCParamGroup>
+</FCParamGroup></FCParamGroup></FCParamGroup></FCParameters>
+"""
+"""No start page: it brings a web browser."""
+
 
 class FreeCAD:
     """FreeCAD of a user whose settings lie below ``home``; ``addon`` installs this checkout for him."""
@@ -44,6 +51,7 @@ class FreeCAD:
         self.said = ""
         """What the last process printed."""
         (home / "Mod").mkdir(parents=True)
+        (home / "user.cfg").write_text(SETTINGS, encoding="utf-8")
         if addon:
             (home / "Mod" / "LceMold").symlink_to(ROOT)
 
@@ -70,7 +78,7 @@ class FreeCAD:
     def _answer(self, *words: str | Path, **more: str) -> Any:
         answer = self.home / "answer.json"
         answer.unlink(missing_ok=True)
-        ended = start(*words, env=environment(self.home, **more), cwd=self.home)
+        ended = start(*words, env=environment(self.home, **more), cwd=self.home, seconds=300)
         self.said = ended.out + ended.err
         assert answer.exists(), f"no answer from FreeCAD, exit code {ended.code}:\n{self.said}"
         result = json.loads(answer.read_text(encoding="utf-8"))

@@ -61,7 +61,8 @@ def finish(saved: Path, looks: Mapping[str, Look], camera: str, target: Path) ->
 def _without_chance(members: Mapping[str, bytes]) -> bytes:
     """``Document.xml`` with dates, object numbers and UUIDs that depend on the content alone."""
     text = members["Document.xml"].decode()
-    text = re.sub(r'(<String value=")\d{4}-\d\d-\d\dT[^"]*Z"', r'\g<1>1980-01-01T00:00:00Z"', text)
+    dates = r'(name="(?:CreationDate|LastModifiedDate)"[^>]*>\s*<String value=")[^"]*'
+    text = re.sub(dates, r"\g<1>1980-01-01T00:00:00Z", text)
     numbers = count(1)
     text = re.sub(r'(<Object type="[^"]*" name="[^"]*" id=")\d+', lambda hit: f"{hit[1]}{next(numbers)}", text)
     digest = hashlib.sha256(re.sub(r'<Uuid value="[^"]*"', "", text).encode())

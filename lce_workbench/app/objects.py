@@ -21,7 +21,7 @@ import FreeCAD
 from lce_solver.errors import InputError
 from lce_solver.types import Design
 from lce_workbench.app.geometry import assembled, stored
-from lce_workbench.app.properties import declare, read
+from lce_workbench.app.properties import declare, properties, read
 from lce_workbench.core import jobfile
 from lce_workbench.core.cell import Prism
 from lce_workbench.core.job import Job
@@ -93,6 +93,14 @@ class Parameters(Proxy):
     def setup(self, obj: Any) -> None:
         super().setup(obj)
         declare(obj, SECTIONS[obj.Section], obj.Section.capitalize())
+
+    def onChanged(self, obj: Any, name: str) -> None:  # noqa: N802 - FreeCAD's name
+        """Let an optional value be edited only while its tick says that it counts."""
+        if "Restore" in obj.State:
+            return
+        for prop in properties(SECTIONS[obj.Section]):
+            if prop.given == name and prop.name in obj.PropertiesList:
+                obj.setEditorMode(prop.name, EDITABLE if getattr(obj, name) else READ_ONLY)
 
     def execute(self, obj: Any) -> None:
         """Check the values.

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 import types
 import typing
-from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import Field, dataclass, fields
 from decimal import Decimal
+from functools import cache
 from typing import Any
 
 UNITS = {"um": ("App::PropertyLength", -3), "mm": ("App::PropertyLength", 0), "deg": ("App::PropertyAngle", 0)}
@@ -63,26 +63,28 @@ class Property:
         return float(Decimal(repr(float(value))).scaleb(places)) if places else value
 
 
-def properties(section: type) -> Iterator[Property]:
-    """Yield the properties that stand for the fields of a section."""
+@cache
+def properties(section: type) -> tuple[Property, ...]:
+    """The properties that stand for the fields of a section."""
     hints = typing.get_type_hints(section)
-    for field in fields(section):
-        meta = field.metadata
-        kinds = [kind for kind in typing.get_args(hints[field.name]) if kind is not types.NoneType]
-        optional = isinstance(hints[field.name], types.UnionType)
-        kind = kinds[0] if optional else hints[field.name]
-        type_, places = UNITS.get(meta["unit"]) or (TYPES[kind], 0)
-        name = "".join(word.capitalize() for word in re.sub(r"_(um|mm|deg|C)$", "", field.name).split("_"))
-        yield Property(
-            field=field.name,
-            name=name,
-            type="App::PropertyEnumeration" if meta["choices"] else type_,
-            kind=kind,
-            places=places,
-            choices=meta["choices"],
-            doc=meta["doc"],
-            given=f"{name}Given" if optional else "",
-        )
+    return tuple(_property(field, hints[field.name]) for field in fields(section))
+
+
+def _property(field: Field[Any], hint: Any) -> Property:
+    optional = isinstance(hint, types.UnionType)
+    kind = next(k for k in typing.get_args(hint) if k is not types.NoneType) if optional else hint
+    type_, places = UNITS.get(field.metadata["unit"]) or (TYPES[kind], 0)
+    name = "".join(word.capitalize() for word in re.sub(r"_(um|mm|deg|C)$", "", field.name).split("_"))
+    return Property(
+        field=field.name,
+        name=name,
+        type="App::PropertyEnumeration" if field.metadata["choices"] else type_,
+        kind=kind,
+        places=places,
+        choices=field.metadata["choices"],
+        doc=field.metadata["doc"],
+        given=f"{name}Given" if optional else "",
+    )
 
 
 def declare(obj: Any, section: type, group: str) -> None:

@@ -1,4 +1,4 @@
-"""The FreeCAD document of the cell: written without a window, opened with one, with and without our addon."""
+"""The FreeCAD document: written and edited without a window, opened with one, with and without our addon."""
 
 import hashlib
 import zipfile
@@ -9,17 +9,13 @@ import numpy as np
 import pytest
 import sheets
 from freecad_call import FreeCAD
-from in_freecad import display
 from PIL import Image
+from processes import display
 
 from lce_workbench.core import jobfile
-from lce_workbench.core.cell import assemble
-from lce_workbench.core.channels import hatch
-from lce_workbench.core.domains import PLATES, partition
-from lce_workbench.core.frame import arrange
 from lce_workbench.core.job import Job
-from lce_workbench.core.marks import marks
 from lce_workbench.outputs import write_design
+from lce_workbench.pipeline import cell_of
 
 JOB = """
 [target]
@@ -107,10 +103,7 @@ def screen():
 
 def prisms(design, job):
     """Name of a body -> its prisms, by the way the pipeline goes: all channels of the sheet."""
-    domains, frame = partition(design), arrange(design.uv, job)
-    channels = {plate: hatch(domains, plate, job.channels) for plate in PLATES}
-    drawn = {plate: np.concatenate([*marks(frame, plate, job.marks).values()]) for plate in PLATES}
-    cell = assemble(frame, job, domains, drawn, channels)
+    cell = cell_of(design, job)
     found = {prism.name: [prism] for prism in cell.parts}
     for prism in cell.channels:
         found.setdefault(prism.group, []).append(prism)
@@ -171,6 +164,14 @@ def test_an_edit_of_depth_and_gap_moves_plates_spacer_film_and_channels(edited):
     for state in ("edited", "reopened", "recomputed"):
         assert edited[0][state]["invalid"] == {}
         assert_is_cell(edited[0][state]["bodies"], thicker, job)
+
+
+def test_a_parameter_that_a_file_lacks_gets_its_default(edited):
+    assert edited[0]["guard"] == 0.0005
+
+
+def test_an_optional_value_can_be_edited_once_it_counts(opened):
+    assert opened["modes"] == [["ReadOnly"], []]
 
 
 def test_volumes_follow_the_depth_where_only_numpy_is_installed(freecad, fcstd, opened):
