@@ -98,7 +98,7 @@ def _require_formats(job: Job) -> None:
 def exit_code(records: Sequence[Mapping[str, Any]]) -> int:
     """3 when the solver did not reach its tolerance, 1 when another finding is an error, else 0."""
     errors = [r["check"] for r in records if r["severity"] == Severity.ERROR.value]
-    return 3 if "solver_status" in errors else int(has_error(records))
+    return 3 if "solver" in errors else int(has_error(records))
 
 
 def run_design(run: Run) -> Findings:
@@ -195,9 +195,9 @@ def run_cad(run: Run) -> Findings:
 
     plan = fabricable(read_design(run.folder / "design.npz"))
     (run.folder / "cad").mkdir()
-    write_cad(cell_of(plan, run.job), run.folder / "cad", run.progress)
+    write_cad(cell_of(plan, run.job), run.folder / "cad", lambda stage, done: run.progress(stage, 0.9 * done))
     if run.job.output.freecad:
-        run.progress("cell.FCStd", 0.8)
+        run.progress("cad/cell.FCStd", 0.9)
         run_freecad("document", run.folder)
     run.progress("cad", 1.0)
     return ()
@@ -253,7 +253,7 @@ def inputs(job: Job, base: Path) -> list[dict[str, Any]]:
 def versions() -> dict[str, str]:
     """What made the files."""
     found = {"lce-molds": __version__, "python": platform.python_version()}
-    for package in ("numpy", "scipy", "trimesh", "ezdxf", "cadquery", "build123d"):
+    for package in ("numpy", "scipy", "trimesh", "ezdxf", "cadquery"):
         with suppress(PackageNotFoundError):
             found[package] = version(package)
     return found

@@ -165,7 +165,7 @@ def test_a_solver_that_is_stopped_early_says_so_and_ends_with_3(tmp_path, job):
     assert main(["design", str(job), "--quiet", "--out", str(out), "--set", "solver.max_iterations=2"]) == 3
     manifest = json.loads((out / "manifest.json").read_text())
     assert manifest["exit_code"] == 3
-    assert any(f["check"] == "solver_status" and f["severity"] == "error" for f in manifest["findings"])
+    assert any(f["check"] == "solver" and f["severity"] == "error" for f in manifest["findings"])
 
 
 def test_an_interrupted_build_leaves_nothing(job, tmp_path):

@@ -1,4 +1,4 @@
-"""The FreeCAD document: written and edited without a window, opened with one, with and without our addon."""
+"""The FreeCAD document of the cell: written without a window, opened with one, with and without our addon."""
 
 import hashlib
 import zipfile
