@@ -1,1 +1,1 @@
-"""Prisms become solids: build123d and cadquery headless, FreeCAD's Part in the document."""
+"""Prisms become solids: cadquery headless, FreeCAD's Part in the document."""

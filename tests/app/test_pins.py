@@ -13,8 +13,6 @@ from processes import ROOT
 SETS = ("requirements.txt", "requirements-test.txt")
 
 LEFT_OUT = {
-    # The same files as cadquery-ocp, without the VTK classes that cadquery imports.
-    "build123d": {"cadquery-ocp-novtk"},
     # For cadquery's browser viewer, and for its NURBS fitting, which nothing of ours imports.
     "cadquery": {"trame", "trame-vtk", "trame-components", "trame-vuetify", "numba"},
 }
