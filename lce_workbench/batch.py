@@ -33,9 +33,9 @@ def run(argv: list[str]) -> int:
     except EnvironmentFault as fault:
         print(f"lce: {fault}", file=sys.stderr)
         return fault.exit_code
-    from lce_workbench.cli import guarded, main
+    from lce_workbench import cli
 
-    return guarded(_document, argv[1:]) if argv[:1] == ["document"] else main(argv)
+    return cli.guarded(_document, argv[1:]) if argv[:1] == ["document"] else cli.main(argv)
 
 
 def _document(argv: list[str]) -> int:
