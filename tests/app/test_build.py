@@ -4,14 +4,17 @@ import csv
 import hashlib
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
 
+import meshes
 import numpy as np
 import pytest
+from faults import BAD_JOBS, BAD_MESHES
 
 from lce_workbench import ROOT
 from lce_workbench.cli import main
@@ -151,6 +154,28 @@ def test_faults_of_the_user_end_with_2_and_one_sentence(capsys, tmp_path, job):
     (tmp_path / "lost.toml").write_text('[target]\nmesh = "lost.stl"\n')
     assert "lost.stl" in fails("build", tmp_path / "lost.toml")
     assert sorted(p.name for p in tmp_path.iterdir()) == ["lost.toml"]
+
+
+@pytest.mark.parametrize("case", BAD_JOBS)
+def test_a_bad_job_ends_with_2_and_its_sentence(capsys, tmp_path, case):
+    text, words = BAD_JOBS[case]
+    (tmp_path / "bad.toml").write_text(text)
+    code, sentence = said(capsys, "build", tmp_path / "bad.toml")
+    assert code == 2
+    assert words in sentence
+    assert [p.name for p in tmp_path.iterdir()] == ["bad.toml"]
+
+
+@pytest.mark.parametrize("case", BAD_MESHES)
+def test_a_bad_mesh_ends_with_2_and_its_sentence(capsys, tmp_path, case):
+    make, element, remedy = BAD_MESHES[case]
+    meshes.write_obj(tmp_path / "bad.obj", *make())
+    (tmp_path / "bad.toml").write_text('[target]\nmesh = "bad.obj"\n')
+    code, sentence = said(capsys, "build", tmp_path / "bad.toml")
+    assert code == 2
+    assert re.search(element, sentence), sentence
+    assert remedy in sentence
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["bad.obj", "bad.toml"]
 
 
 def test_an_unwritable_output_ends_with_4(capsys, tmp_path, job):

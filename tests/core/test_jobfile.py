@@ -3,45 +3,16 @@
 from dataclasses import fields
 
 import pytest
+from faults import BAD_JOBS, FACE
 
 from lce_solver.errors import InputError
 from lce_workbench.core import jobfile
 from lce_workbench.core.job import Job
 
-FACE = '[target]\nsurface = "face"\n'
 
-BAD = {
-    "unknown section": (FACE + "[chanels]\n", "[chanels]; did you mean channels?"),
-    "unknown key": (FACE + "[sheet]\nwitdh_mm = 20\n", "sheet.witdh_mm; did you mean width_mm?"),
-    "wrong type": (FACE + '[sheet]\nwidth_mm = "wide"\n', "sheet.width_mm must be a number, not 'wide'"),
-    "boolean as a number": (FACE + "[sheet]\nwidth_mm = true\n", "sheet.width_mm must be a number"),
-    "fraction as a count": (FACE + "[solver]\nstarts = 1.5\n", "solver.starts must be a whole number"),
-    "section as a value": (FACE + "sheet = 3\n", "target.sheet"),
-    "lambda 0": (FACE + "[material]\nlambda = 0\nnu = 0.5\n", "material.lambda is 0; it must be greater than 0"),
-    "lambda negative": (FACE + "[material]\nlambda = -0.6\nnu = 0.5\n", "material.lambda is -0.6"),
-    "lambda without nu": (FACE + "[material]\nlambda = 0.6\n", "material.lambda and material.nu belong together"),
-    "material twice": (FACE + '[material]\npreset = "x"\nlambda = 0.6\nnu = 0.5\n', "the material is given twice"),
-    "curve alone": (FACE + '[material]\ncurve = "c.csv"\n', "material.temperature_C belong together"),
-    "gap 0": (FACE + "[sheet]\ngap_um = 0\n", "sheet.gap_um is 0 um; it must be greater than 0 um"),
-    "spacing 0": (FACE + "[channels]\nspacing_um = 0\n", "channels.spacing_um is 0 um"),
-    "not finite": (FACE + "[sheet]\nwidth_mm = nan\n", "sheet.width_mm is nan; give a finite number"),
-    "infinite": (FACE + "[sheet]\nwidth_mm = inf\n", "sheet.width_mm is inf"),
-    "domain larger than the sheet": (
-        FACE + "[domains]\nsize_um = 9000\n[sheet]\nwidth_mm = 5\n",
-        "is not smaller than",
-    ),
-    "domain smaller than a channel": (FACE + "[domains]\nsize_um = 3\n", "holds hardly a channel"),
-    "no target": ("[sheet]\nwidth_mm = 20\n", "give either target.mesh"),
-    "two targets": ('[target]\nsurface = "face"\nmesh = "a.stl"\n', "give either target.mesh"),
-    "unknown choice": ('[target]\nmesh = "a.stl"\nsubdivision = "cubic"\n', "choose one of loop, midpoint"),
-    "list of other things": (FACE + "[output]\nstep_domains = [1.5]\n", "each item is a whole number"),
-    "not TOML": ("[target\n", "is not valid TOML"),
-}
-
-
-@pytest.mark.parametrize("case", BAD)
+@pytest.mark.parametrize("case", BAD_JOBS)
 def test_a_bad_job_is_one_sentence_that_names_the_key(case):
-    text, words = BAD[case]
+    text, words = BAD_JOBS[case]
     with pytest.raises(InputError) as fault:
         jobfile.parse(text, "job.toml")
     assert words in str(fault.value)
