@@ -91,7 +91,7 @@ def energy(op: Operator, w: Complexes, stretches: tuple[float, float]) -> tuple[
     excess = size - np.repeat(moduli(stretches), len(size) // 2)
     force = op.weight * excess
     gradient = op.adjoint @ (2 * force / np.maximum(size, TINY) * ab)
-    return float(force @ excess), gradient
+    return float(np.einsum("i,i->", force, excess)), gradient
 
 
 def stretched(w: Complexes, stretches: tuple[float, float], angle: float) -> Complexes:
