@@ -49,7 +49,9 @@ def remesh(surface: Surface, edge: float) -> Surface:
     centre, scale = low + (high - low) / 2, 2.0 ** np.ceil(np.log2((high - low).max()))  # a power of two rounds nothing
     unit, aim = Surface((surface.vertices - centre) / scale, surface.faces), edge / scale
     loops = boundary_loops(unit.faces)
-    sharp = np.concatenate([unit.vertices[loop[corners(unit.vertices[loop], aim)]] for loop in loops])
+    sharp = np.concatenate(
+        [np.empty((0, 3)), *(unit.vertices[loop[corners(unit.vertices[loop], aim)]] for loop in loops)]
+    )
     found, request = unit, aim / LENGTHENING
     for done in range(PASSES):
         _, fixed = cKDTree(found.vertices).query(sharp)
@@ -58,13 +60,13 @@ def remesh(surface: Surface, edge: float) -> Surface:
         if done and abs(ratio - 1) <= TOLERANCE:
             break
         request /= ratio
-    if topology(found.faces) != topology(unit.faces) or face_areas(found).min() < SLIVER * aim**2:
+    if _kind(found.faces) != _kind(unit.faces) or face_areas(found).min() < SLIVER * aim**2:
         msg = f"edges of {edge:g} are too long for the holes and necks of this surface; ask for shorter ones"
         raise InputError(msg)
     return Surface(found.vertices * scale + centre, found.faces)
 
 
-def topology(faces: Ints) -> tuple[int, int]:
+def _kind(faces: Ints) -> tuple[int, int]:
     """Number of rims and Euler characteristic."""
     return len(boundary_loops(faces)), len(np.unique(faces)) - len(edges(faces)) + len(faces)
 
@@ -80,7 +82,9 @@ def _check_edge(surface: Surface, edge: float) -> None:
     number = float(face_areas(surface).sum()) / (np.sqrt(3) / 4 * edge**2)
     if number > MOST_TRIANGLES:
         least = edge * np.sqrt(number / MOST_TRIANGLES)
-        msg = f"edges of {edge:g} make {number:.3g} triangles, more than {MOST_TRIANGLES:g}; ask for {least:.3g} or more"
+        msg = (
+            f"edges of {edge:g} make {number:.3g} triangles, more than {MOST_TRIANGLES:g}; ask for {least:.3g} or more"
+        )
         raise InputError(msg)
 
 
@@ -95,20 +99,31 @@ def corners(rim: Floats, edge: float) -> Ints:
     for i in np.flatnonzero(turn > CORNER)[np.argsort(-turn[turn > CORNER], kind="stable")]:
         if not found or np.linalg.norm(rim[found] - rim[i], axis=1).min() > edge / 2:
             found.append(int(i))
-    return np.array(found, dtype=np.int64)
+    return np.array(sorted(found), dtype=np.int64)
 
 
 def _first_away(rim: Floats, distance: float, step: int) -> Floats:
-    """(n, 3) the first vertex at least ``distance`` away, walking along the rim; the farthest of a small hole."""
-    best, far = np.zeros(len(rim)), np.array(rim)
+    """(n, 3) where the rim, walked from each vertex, gets ``distance`` away; of a small hole the farthest vertex."""
+    far, best, open_ = np.array(rim), np.zeros(len(rim)), np.ones(len(rim), dtype=bool)
     for k in range(1, len(rim)):
-        other = np.roll(rim, -k * step, axis=0)
-        gap = np.linalg.norm(other - rim, axis=1)
-        better = (best < distance) & (gap > best)
-        if not (best < distance).any():
+        last, here = np.roll(rim, (1 - k) * step, axis=0), np.roll(rim, -k * step, axis=0)
+        gap = np.linalg.norm(here - rim, axis=1)
+        crossing = open_ & (gap >= distance)
+        far[crossing] = _on_sphere(rim[crossing], last[crossing], here[crossing], distance)
+        open_ &= ~crossing
+        farther = open_ & (gap > best)
+        far[farther], best[farther] = here[farther], gap[farther]
+        if not open_.any():
             break
-        best[better], far[better] = gap[better], other[better]
     return far
+
+
+def _on_sphere(centre: Floats, inside: Floats, outside: Floats, radius: float) -> Floats:
+    """(n, 3) where the segments from inside to outside leave the spheres."""
+    p, q = inside - centre, outside - inside
+    pq, qq = (p * q).sum(axis=1), (q * q).sum(axis=1)
+    t = (-pq + np.sqrt(pq**2 + qq * np.maximum(radius**2 - (p * p).sum(axis=1), 0.0))) / qq
+    return np.asarray(inside + t[:, None] * q)
 
 
 def _angle(a: Floats, b: Floats) -> Floats:
@@ -117,7 +132,7 @@ def _angle(a: Floats, b: Floats) -> Floats:
 
 def _mmg(surface: Surface, size: float, fixed: Ints) -> Surface:
     """MMG's mesh of constant ``size``; the vertices ``fixed`` (k,) stay."""
-    mesh = MmgMeshS(np.array(surface.vertices), surface.faces.astype(np.int32))
+    mesh = MmgMeshS(np.array(surface.vertices, order="C"), np.array(surface.faces, np.int32, order="C"))
     if len(fixed):
         mesh.set_required_vertices(fixed.astype(np.int32))
     try:
@@ -127,19 +142,20 @@ def _mmg(surface: Surface, size: float, fixed: Ints) -> Surface:
     except RuntimeError as fault:
         msg = f"the remesher gave up ({fault}); repair the mesh in a mesh editor or keep the input's triangles"
         raise SolverError(msg) from fault
-    return Surface(mesh.get_vertices(), mesh.get_triangles())
+    return Surface(mesh.get_vertices(), mesh.get_triangles().astype(np.int64))
 
 
 def _on(target: Surface, loops: list[Ints], found: Surface) -> Surface:
     """``found`` with its vertices moved to the closest points of ``target``, rim to rim."""
     points = _closest(found.vertices, target.vertices, target.faces)
-    rim = np.concatenate(boundary_loops(found.faces))
-    segments = np.concatenate([np.stack([loop, np.roll(loop, -1)], axis=1) for loop in loops])
-    points[rim] = _closest(found.vertices[rim], target.vertices, segments)
+    if loops:
+        rim = np.concatenate(boundary_loops(found.faces))
+        segments = np.concatenate([np.stack([loop, np.roll(loop, -1)], axis=1) for loop in loops])
+        points[rim] = _closest(found.vertices[rim], target.vertices, segments)
     return Surface(points, found.faces)
 
 
 def _closest(points: Floats, vertices: Floats, elements: Ints) -> Floats:
     """(n, 3) closest points on triangles (m, 3) or segments (m, 2)."""
-    nearest: Floats = igl.point_mesh_squared_distance(np.array(points), np.array(vertices), np.array(elements))[2]
-    return nearest
+    arrays = (np.array(values, order="C") for values in (points, vertices, elements))
+    return np.asarray(igl.point_mesh_squared_distance(*arrays)[2])
