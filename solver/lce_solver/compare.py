@@ -75,7 +75,7 @@ class Alignment:
 
 
 def align(points: Floats, onto: Floats, weights: Floats, *, reflect: bool = False, scale: bool = False) -> Alignment:
-    """Move ``points`` (n, 3) onto ``onto`` (n, 3) with the least weighted squares (W. Kabsch, Acta Cryst. A32, 922 (1976)).
+    """Move ``points`` (n, 3) onto ``onto`` (n, 3) by weighted least squares (W. Kabsch, Acta Cryst. A32, 922 (1976)).
 
     With ``reflect`` the motion is a rotation with a reflection, never a rotation alone.
     """
@@ -92,10 +92,13 @@ def align(points: Floats, onto: Floats, weights: Floats, *, reflect: bool = Fals
     return Alignment(rotation, shift, factor, moved, distance, float(np.sqrt(share @ distance**2)))
 
 
-def compare(design: Design, found: Prediction, settled: Prediction | None = None, *, reach: float = REACH) -> Comparison:
+def compare(
+    design: Design, found: Prediction, settled: Prediction | None = None, *, reach: float = REACH
+) -> Comparison:
     """Compare the shape that was ``found`` with the design's target.
 
-    ``settled`` is a run that started at the target. It tells a sheet in a wrong state from one whose right state is not the target.
+    ``settled`` is a run that started at the target: it tells a sheet in a wrong state from one whose right state is not
+    the target.
     """
     target, faces = design.surface.vertices, design.surface.faces
     weights = vertex_areas(target, faces)
@@ -134,7 +137,7 @@ def vertex_areas(vertices: Floats, faces: Ints) -> Floats:
     """A third of the areas of the triangles around each vertex, (n_v,)."""
     corners = vertices[faces]
     area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
-    return np.bincount(faces.ravel(), np.repeat(area / 3, 3), minlength=len(vertices))
+    return np.asarray(np.bincount(faces.ravel(), np.repeat(area / 3, 3), minlength=len(vertices)), dtype=np.float64)
 
 
 def residual_strain(uv: Floats, faces: Ints, theta: Floats, material: Material, vertices: Floats) -> float:
@@ -149,7 +152,7 @@ def residual_strain(uv: Floats, faces: Ints, theta: Floats, material: Material, 
 
 
 def angle_deficit(vertices: Floats, faces: Ints) -> Floats:
-    """2 pi less the angles around each inner vertex, 0 on the border, (n_v,) [rad]: its share of the Gaussian curvature."""
+    """2 pi less the angles around each inner vertex, 0 on the border, (n_v,) [rad]: the Gaussian curvature it holds."""
     corners = vertices[faces]
     onward = np.roll(corners, -1, axis=1) - corners
     back = np.roll(corners, 1, axis=1) - corners
@@ -158,7 +161,7 @@ def angle_deficit(vertices: Floats, faces: Ints) -> Floats:
     sides = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     edges, counts = np.unique(sides, axis=0, return_counts=True)
     deficit[edges[counts == 1]] = 0.0
-    return deficit
+    return np.asarray(deficit, dtype=np.float64)
 
 
 def hausdorff(vertices: Floats, others: Floats, faces: Ints) -> float:
@@ -198,4 +201,4 @@ def distance_to_triangle(points: Floats, corners: Floats) -> Floats:
     normal = np.cross(edges[:, 0], edges[:, 1])
     size = np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)
     inside = ((np.cross(edges, to) * normal[:, None]).sum(axis=2) > 0).all(axis=1)
-    return np.where(inside, np.abs((to[:, 0] * normal).sum(axis=1)) / size, to_edges)
+    return np.asarray(np.where(inside, np.abs((to[:, 0] * normal).sum(axis=1)) / size, to_edges))

@@ -1,40 +1,41 @@
 """Forward simulation: what shape a patterned flat sheet takes when it is heated.
 
-A thin non-Euclidean shell (Koiter energy) is followed from the flat sheet through small steps of temperature. Nothing here knows the
-target, so the sheet may buckle into the mirror image or another isometry, as a real one may.
+A thin non-Euclidean shell (Koiter energy) is followed from the flat sheet through small steps of temperature. Nothing
+here knows the target, so the sheet may buckle into the mirror image or another isometry, as a real one may.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from lce_solver import cholesky
 from lce_solver.errors import InputError
-from lce_solver.shell_energy import POISSON, Reference, energy, parts, reference, residual_strain, stiffness
+from lce_solver.shell_energy import Reference, energy, parts, reference, residual_strain, stiffness
 from lce_solver.shell_minimise import Minimum, Solve, minimise
 from lce_solver.shell_patch import Shell, shell
-from lce_solver.types import Floats, HeatingStep, Ints, Material, Prediction, Progress, owned, silent
+from lce_solver.types import Design, Floats, HeatingStep, Ints, Material, Prediction, Progress, owned, silent
 
 STEPS = 10
 ONSET = 3
-"""Step k of n goes to ln(lambda) (k/n)^ONSET. A thin sheet buckles at strains of (thickness/size)^2: where the first steps pass that
-point by far, many short waves grow at once and end in a wrong isometry; just above it only the longest one does."""
+"""Step k of n goes to lambda^((k/n)^ONSET). A thin sheet buckles at strains of (thickness / size)^2. Where a step goes
+far beyond, many short waves grow at once and end in a wrong isometry; just above it only the longest wave grows."""
 SETTLED = 1e-4
-"""The last step ends when a further iteration saves less than this times (thickness^3 / 12)."""
+"""The last step ends when a further iteration would save less than this times thickness^3 / 12."""
 PASSING = 1e-2
-"""The same for the others, times the square of the share of strain: after buckling the energy grows with that."""
+"""The same for the others, times the square of the share of the strain: a sheet about to buckle has little to save."""
 FOUNDATION = 0.1
-"""The preconditioner holds rigid motions by springs, this many times as stiff per area as the sheet's longest bending wave."""
+"""Springs hold rigid motions in the preconditioner, in units of the stiffness of the sheet's longest bending wave."""
 LIMIT = 1000
 """Iterations in one step."""
 
 
 @dataclass(frozen=True, eq=False)
-class Problem:
-    """A sheet with its pattern, ready to be heated."""
+class Film:
+    """A patterned flat sheet, ready to be heated. With `dataclasses.replace` the same mesh takes another pattern."""
 
     sheet: Shell
     theta: Floats
@@ -43,38 +44,42 @@ class Problem:
     """(n_f,) twist, top minus bottom [rad]."""
     material: Material
     thickness: float
-    """Of the prepared film [mm]."""
+    """As prepared [mm]."""
     ordering: cholesky.Plan
 
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.thickness) and self.thickness > 0):
+            msg = f"the film's thickness is {self.thickness:g} mm; give a positive length, for example 0.1"
+            raise InputError(msg)
+        for name in ("theta", "dtheta"):
+            object.__setattr__(self, name, owned(getattr(self, name), name, np.float64, len(self.sheet.faces)))
+
     def at(self, lambda_: float) -> Reference:
-        """What the sheet wants to be when the director's stretch is ``lambda_``."""
-        return reference(self.sheet, self.theta, self.dtheta, replace(self.material, lambda_=lambda_), self.thickness)
+        """What the film wants to be when the stretch along the director is ``lambda_``."""
+        material = replace(self.material, lambda_=lambda_)
+        return reference(self.sheet, self.theta, self.dtheta, material, thickness=self.thickness)
 
 
-def problem(uv: Floats, faces: Ints, theta: Floats, dtheta: Floats, material: Material, thickness: float) -> Problem:
+def film(uv: Floats, faces: Ints, theta: Floats, dtheta: Floats, *, material: Material, thickness: float) -> Film:
     """Prepare the flat mesh ``uv`` (n_v, 2) [mm], ``faces`` (n_f, 3) with ``theta``, ``dtheta`` (n_f,) [rad].
 
     Raises
     ------
     InputError
-        The mesh has flipped triangles or too few vertices, or the thickness is not positive.
+        The mesh has flipped triangles or too few vertices, or the thickness [mm] is not positive.
     """
-    if not (np.isfinite(thickness) and thickness > 0):
-        msg = f"the film's thickness is {thickness:g} mm; it must be a positive number, for example 0.1"
-        raise InputError(msg)
     sheet = shell(uv, faces)
-    theta = owned(theta, "theta", np.float64, len(sheet.faces))
-    dtheta = owned(dtheta, "dtheta", np.float64, len(sheet.faces))
-    return Problem(sheet, theta, dtheta, material, thickness, cholesky.plan(sheet.uv, sheet.patch))
+    return Film(sheet, theta, dtheta, material, thickness, cholesky.plan(sheet.uv, sheet.patch))
+
+
+def film_of(design: Design) -> Film:
+    """Prepare the sheet of a design."""
+    pattern = design.uv, design.surface.faces, design.theta, design.dtheta
+    return film(*pattern, material=design.material, thickness=design.thickness)
 
 
 def predict(
-    uv: Floats,
-    faces: Ints,
-    theta: Floats,
-    dtheta: Floats,
-    material: Material,
-    thickness: float,
+    flat: Film,
     *,
     seed: int,
     imperfection: float = 0.02,
@@ -82,55 +87,42 @@ def predict(
     tolerance: float = SETTLED,
     progress: Progress = silent,
 ) -> Prediction:
-    """Heat the flat sheet from lambda = 1 to the material's, and return the shape it takes.
+    """Heat the flat film from lambda = 1 to its material's, and return the shape that it takes.
 
     Parameters
     ----------
-    uv, faces, theta, dtheta, material, thickness
-        As for `problem`.
-    seed, imperfection
-        Every vertex starts off the plane by normal noise of this standard deviation, in units of the thickness.
-    steps
-        Steps of the heating, denser at its start.
-    tolerance
-        Energy that a further iteration may still save, in units of Young's modulus x thickness^3 / 12.
-    progress
-        Called before every iteration; it may raise `Cancelled`.
+    seed, imperfection : every vertex starts off the plane by normal noise, of this deviation in units of the thickness.
+    steps : of the heating, denser at its start.
+    tolerance : energy that a further iteration may still save, in units of Young's modulus x thickness^3 / 12.
+    progress : called before every iteration.
     """
-    given = problem(uv, faces, theta, dtheta, material, thickness)
-    height = imperfection * thickness * np.random.default_rng(seed).standard_normal(len(uv))
+    uv = flat.sheet.uv
+    height = imperfection * flat.thickness * np.random.default_rng(seed).standard_normal(len(uv))
     shares = (np.arange(1, steps + 1) / steps) ** ONSET
     tolerances = np.append(PASSING * shares[:-1] ** 2, tolerance)
-    lambdas = material.lambda_**shares
-    return heat(given, np.column_stack([uv, height]), lambdas, tolerances, progress)
+    return heat(flat, np.column_stack([uv, height]), flat.material.lambda_**shares, tolerances, progress=progress)
 
 
-def settle(
-    given: Problem, start: Floats, *, tolerance: float = SETTLED, progress: Progress = silent
-) -> Prediction:
-    """Relax the sheet at its final temperature from ``start`` (n_v, 3) [mm]: at the target, this tells the target's own energy."""
-    return heat(given, start, np.array([given.material.lambda_]), np.array([tolerance]), progress)
+def settle(flat: Film, start: Floats, *, tolerance: float = SETTLED, progress: Progress = silent) -> Prediction:
+    """Relax the hot film from ``start`` (n_v, 3) [mm]; from the target this gives the energy to compare others with."""
+    return heat(flat, start, np.array([flat.material.lambda_]), np.array([tolerance]), progress=progress)
 
 
-def heat(given: Problem, start: Floats, lambdas: Floats, tolerances: Floats, progress: Progress = silent) -> Prediction:
+def heat(flat: Film, start: Floats, lambdas: Floats, tolerances: Floats, *, progress: Progress = silent) -> Prediction:
     """Follow the equilibrium from ``start`` (n_v, 3) [mm] through ``lambdas`` (k,), each to its tolerance (k,)."""
-    before = now = np.asarray(start, dtype=np.float64)
+    before = now = np.array(start, dtype=np.float64)
     history, frames = [], []
     for step, (lambda_, tolerance) in enumerate(zip(lambdas, tolerances, strict=True)):
-        aim = given.at(float(lambda_))
-        done = step / len(lambdas)
-        found = _relax(given, aim, _extrapolate(given.sheet, aim, before, now), tolerance, _announce(progress, done))
+        aim, done = flat.at(float(lambda_)), step / len(lambdas)
+        ahead = _extrapolate(flat.sheet, aim, before, now)
+        found = relax(flat, aim, ahead, tolerance, watch=partial(progress, "heating", done))
         before, now = now, found.x
-        stretching, bending = parts(given.sheet, aim, now)
-        history.append(HeatingStep(float(lambda_), stretching, bending, found.iterations, found.status))
+        history.append(HeatingStep(float(lambda_), *parts(flat.sheet, aim, now), found.iterations, found.status))
         frames.append(now)
     progress("heating", 1.0)
-    strain = residual_strain(given.sheet, aim, now)
-    return Prediction(now, stretching, bending, strain, found.status, tuple(history), np.array(frames))
-
-
-def _announce(progress: Progress, done: float) -> Callable[[], None]:
-    return lambda: progress("heating", done)
+    strain = residual_strain(flat.sheet, aim, now)
+    last = history[-1]
+    return Prediction(now, last.stretching, last.bending, strain, last.status, tuple(history), np.array(frames))
 
 
 def _extrapolate(sheet: Shell, aim: Reference, before: Floats, now: Floats) -> Floats:
@@ -139,15 +131,17 @@ def _extrapolate(sheet: Shell, aim: Reference, before: Floats, now: Floats) -> F
     return ahead if energy(sheet, aim, ahead)[0] < energy(sheet, aim, now)[0] else now
 
 
-def _relax(given: Problem, aim: Reference, start: Floats, tolerance: float, watch: Callable[[], None]) -> Minimum:
-    """Minimise at one temperature."""
-    sheet = given.sheet
+def relax(
+    flat: Film, aim: Reference, start: Floats, tolerance: float, *, watch: Callable[[], None] = lambda: None
+) -> Minimum:
+    """Minimise the energy against ``aim`` from ``start`` (n_v, 3) [mm]; ``tolerance`` as for `predict`."""
+    sheet = flat.sheet
     rigidity = aim.thickness**3 / 12
-    area = np.bincount(sheet.faces.ravel(), np.repeat(sheet.area / 3, 3), minlength=len(sheet.uv))
-    springs = FOUNDATION * rigidity / sheet.size**4 * area
+    shares = np.bincount(sheet.faces.ravel(), np.repeat(sheet.area / 3, 3), minlength=len(sheet.uv))
+    springs = np.asarray(FOUNDATION * rigidity / sheet.size**4 * shares)
 
     def factorise(x: Floats) -> Solve:
-        return cholesky.factorise(given.ordering, stiffness(sheet, aim, x), springs)
+        return cholesky.factorise(flat.ordering, stiffness(sheet, aim, x), springs)
 
     return minimise(
         lambda x: energy(sheet, aim, x),

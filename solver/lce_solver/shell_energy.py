@@ -1,16 +1,15 @@
-"""Koiter energy of a thin shell with prescribed metric and curvature; gradient and a semi-definite Hessian, closed form.
+"""Koiter energy of a thin shell with prescribed metric and curvature; closed-form gradient and semi-definite Hessian.
 
     E = sum_t A sqrt(det a_bar) [ h/(8 (1-nu^2)) Q(a_bar^-1 (a - a_bar)) + h^3/(24 (1-nu^2)) Q(a_bar^-1 (b - b_bar)) ],
     Q(T) = nu tr(T)^2 + (1-nu) tr(T^2),  a_ij = x_i . x_j,  b_ij = n . x_ij,  n ~ x_1 cross x_2 (the sheet's top).
 
-Per triangle both terms are sums of three squares, so the energy is a least-squares problem. Energies are per Young's modulus.
+Per triangle both terms are sums of three squares: a least-squares problem. Energies are per Young's modulus.
 Symmetric 2x2 tensors are stored as their components 11, 22, 12.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -36,7 +35,7 @@ class Reference:
 
 
 def reference(
-    sheet: Shell, theta: Floats, dtheta: Floats, material: Material, thickness: float, poisson: float = POISSON
+    sheet: Shell, theta: Floats, dtheta: Floats, material: Material, *, thickness: float, poisson: float = POISSON
 ) -> Reference:
     """Prescribed metric (paper, eq. S1) and curvature (eq. S4, its sign fixed by b = n . x_ij, n towards the top).
 
@@ -123,7 +122,7 @@ def parts(sheet: Shell, aim: Reference, x: Floats) -> tuple[float, float]:
 
 
 def energy(sheet: Shell, aim: Reference, x: Floats) -> tuple[float, Floats]:
-    """Energy per Young's modulus [mm^3] of ``x`` (n_v, 3) [mm] and its exact gradient (n_v, 3); NaN where x is singular."""
+    """Energy per Young's modulus [mm^3] of ``x`` (n_v, 3) [mm] and its gradient (n_v, 3); NaN where x is singular."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         forms = _forms(sheet, x)
         residual, stretch, bend = _stresses(aim, forms)

@@ -1,4 +1,4 @@
-"""Preconditioned L-BFGS: the inverse of a semi-definite Hessian, factorised now and then, with the last steps' curvature."""
+"""Preconditioned L-BFGS: a semi-definite Hessian, factorised now and then, and the curvature met in the last steps."""
 
 from __future__ import annotations
 
@@ -55,8 +55,8 @@ def minimise(
 ) -> Minimum:
     """Minimise from ``x`` (n_v, 3) until a step is expected to save less than ``tolerance``, an energy.
 
-    ``factorise(x)`` returns the solver of a positive definite approximation of the Hessian. No vertex moves further than
-    ``longest`` [mm] in one step. ``watch`` is called before every step and may raise.
+    ``factorise(x)`` returns the solver of a positive definite approximation of the Hessian. No vertex moves further
+    than ``longest`` [mm] in one step. ``watch`` is called before every step and may raise.
     """
     at = _Point(x, *energy(x))
     if not np.isfinite(at.energy):
@@ -101,10 +101,8 @@ def _remember(pairs: deque[tuple[Floats, Floats]], moved: Floats, turned: Floats
         pairs.append((moved, turned))
 
 
-def _search(
-    energy: Energy, at: _Point, step: Floats, saving: float, longest: float
-) -> tuple[_Point | None, float]:
-    """Backtrack until the energy falls enough; return the point, if there is one, and the fraction of the step taken."""
+def _search(energy: Energy, at: _Point, step: Floats, saving: float, longest: float) -> tuple[_Point | None, float]:
+    """Backtrack until the energy falls enough; return the point, if there is one, and the fraction of the step."""
     fraction = min(1.0, longest / float(np.linalg.norm(step, axis=1).max()))
     while fraction > SHORTEST:
         x = at.x + fraction * step

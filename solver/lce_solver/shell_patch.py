@@ -1,7 +1,7 @@
 """A flat triangle mesh with the operators of a thin shell: tangents per triangle, second derivatives per 6-node patch.
 
-The patch is the triangle with the three vertices opposite its edges; the one quadratic through the six nodes has constant
-second derivatives, exact for quadratic maps on any mesh (curvature from hinge angles does not converge on irregular ones).
+The patch is the triangle with the three vertices opposite its edges. The one quadratic through the six nodes has
+constant second derivatives, exact for quadratic maps on any mesh (from hinge angles they do not even converge).
 Where the mesh ends, or the six nodes lie near a conic, the three outer nodes are chosen anew from the neighbourhood.
 """
 
@@ -95,9 +95,7 @@ def _operator(nodes: Ints, weights: Floats, n_vertices: int) -> Any:
     n_f, k, components = weights.shape
     rows = np.arange(0, n_f * components * k + 1, k)
     columns = np.tile(nodes.ravel(), components)
-    return sparse.csr_matrix(
-        (np.moveaxis(weights, 2, 0).ravel(), columns, rows), shape=(n_f * components, n_vertices)
-    )
+    return sparse.csr_matrix((np.moveaxis(weights, 2, 0).ravel(), columns, rows), shape=(n_f * components, n_vertices))
 
 
 def _patches(uv: Floats, faces: Ints) -> tuple[Ints, Floats]:
