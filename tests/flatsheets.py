@@ -9,6 +9,8 @@ from lce_solver.compare import align
 from lce_solver.shell import film
 from lce_solver.types import Material
 
+WARM, HOT = Material(0.7, 0.5), Material(0.6, 0.5)
+
 
 def disk(rings, jitter=0.2, radius=1.0, seed=0):
     """About 6 rings^2 triangles of a disk, jittered inside by a share of the edge: points (n, 2), faces."""
@@ -54,7 +56,7 @@ def polar(mesh):
     return np.hypot(x, y), np.arctan2(y, x)
 
 
-def cone_film(mesh, material=Material(0.7, 0.5), thickness=0.01):
+def cone_film(mesh, material=WARM, thickness=0.01):
     """The director runs in circles: half angle ``cone_angle``."""
     azimuth = polar(mesh)[1]
     return film(*mesh, azimuth + np.pi / 2, 0 * azimuth, material=material, thickness=thickness)
@@ -75,7 +77,7 @@ def fitted_cone_angle(flat, vertices):
     return np.arctan(np.polyfit(np.linalg.norm(centres - centres[0], axis=1), radii, 1)[0])
 
 
-def cap_film(mesh, curvature=2.6, material=Material(0.6, 0.5), thickness=0.01):
+def cap_film(mesh, curvature=2.6, material=HOT, thickness=0.01):
     """The rotationally symmetric director of constant Gaussian curvature [1/mm^2]: a spherical cap."""
     r, azimuth = polar(mesh)
     along, across = material.along**2, material.across**2

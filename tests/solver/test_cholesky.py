@@ -33,7 +33,7 @@ def test_solution_equals_that_of_the_dense_matrix(rings, d):
 
 def test_parts_that_do_not_touch():
     points, faces = disk(8)
-    apart = np.concatenate([points, points + (5, 0)]), np.concatenate([faces, faces + len(points)])
+    apart = np.concatenate([points, points + np.array([5.0, 0.0])]), np.concatenate([faces, faces + len(points)])
     blocks, shift = blocks_of(apart[1], 2), np.ones(2 * len(points))
     right = np.random.default_rng(1).standard_normal((2 * len(points), 2))
     exact = np.linalg.solve(dense(2 * len(points), apart[1], blocks, shift), right.ravel()).reshape(-1, 2)

@@ -106,7 +106,7 @@ def test_hausdorff_sees_a_dent_from_both_sides():
     flat = np.column_stack([uv, 0 * uv[:, 0]])
     dented = flat.copy()
     dented[np.argmin(np.hypot(*uv.T)), 2] = 0.25
-    assert hausdorff(flat, flat + (0, 0, 0.125), faces) == pytest.approx(0.125, rel=1e-12)
+    assert hausdorff(flat, flat + np.array([0, 0, 0.125]), faces) == pytest.approx(0.125, rel=1e-12)
     assert hausdorff(dented, flat, faces) == hausdorff(flat, dented, faces) == pytest.approx(0.25, rel=1e-12)
     assert hausdorff(flat[:, [1, 0, 2]], flat, faces) < 1e-15  # other vertices, the same square
 
@@ -124,7 +124,8 @@ def test_angle_deficits_of_a_cone_are_at_its_tip():
     half = np.radians(40)
     cone = np.column_stack([uv * np.sin(half), r * np.cos(half)])
     deficit = angle_deficit(cone, faces)
-    assert deficit[0] == pytest.approx(2 * np.pi * (1 - np.sin(half)), rel=0.02)  # the tip is a hexagonal pyramid
+    pyramid = 12 * np.arcsin(np.sin(half) * np.sin(np.pi / 6))  # the tip is a hexagonal one
+    assert deficit[0] == pytest.approx(2 * np.pi - pyramid, rel=1e-12)
     assert not deficit[r > 1 - 1e-9].any()
 
 
