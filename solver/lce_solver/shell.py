@@ -20,9 +20,10 @@ from lce_solver.shell_patch import Shell, shell
 from lce_solver.types import Design, Floats, HeatingStep, Ints, Material, Prediction, Progress, owned, silent
 
 STEPS = 10
-ONSET = 3
-"""Step k of n goes to lambda^((k/n)^ONSET). A thin sheet buckles at strains of (thickness / size)^2. Where a step goes
-far beyond, many short waves grow at once and end in a wrong isometry; just above it only the longest wave grows."""
+ONSET = 2
+"""Step k of n goes to lambda^((k/n)^ONSET). A thin sheet buckles at strains of (thickness / size)^2. Where the first step
+goes far beyond, many short waves grow at once, and a sheet without twist ends in a wrong isometry. The path of heating is
+part of the answer: of a sheet with several isometries, another path may find another one. `heat` follows any path."""
 SETTLED = 1e-4
 """The last step ends when a further iteration would save less than this times thickness^3 / 12."""
 PASSING = 1e-2
