@@ -118,13 +118,14 @@ class Surface:
 
 
 class Status(str, Enum):
-    """Why the metric solver stopped; the value is the sentence shown to the user."""
+    """Why a solver stopped; the value is the sentence shown to the user."""
 
     CONVERGED = "converged: the energy no longer decreases"
     ITERATION_LIMIT = "stopped at the iteration limit before the energy settled"
     FLIPPED = "the flat sheet has flipped triangles"
     OVERLAP = "the outline of the flat sheet crosses itself"
     NOT_FINITE = "the energy is not a finite number"
+    STALLED = "stopped: no step lowers the energy, although it is not yet at a minimum"
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,6 +213,53 @@ class Design:
     def theta_bottom(self) -> Floats:
         """(n_f,) director at the bottom of the film, modulo pi [rad]."""
         return line_angle(self.theta - self.dtheta / 2)
+
+
+@dataclass(frozen=True)
+class HeatingStep:
+    """One temperature of the simulated heating; energies are per Young's modulus."""
+
+    lambda_: float
+    """Stretch along the director at this temperature."""
+    stretching: float
+    """[mm^3]"""
+    bending: float
+    """[mm^3]"""
+    iterations: int
+    status: Status
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """The shape that the heated sheet takes."""
+
+    vertices: Floats
+    """(n_v, 3) [mm]."""
+    stretching: float
+    """Stretching energy per Young's modulus [mm^3]."""
+    bending: float
+    """Bending energy per Young's modulus [mm^3]."""
+    residual_strain: float
+    """Area rms of the relative error of both stretches, as they are against as the director prescribes them."""
+    status: Status
+    """Of the last step."""
+    history: tuple[HeatingStep, ...]
+    frames: Floats
+    """(k, n_v, 3) the shape after each step of the heating [mm]; the last is the result."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "vertices", owned(self.vertices, "vertices", np.float64, None, 3))
+        object.__setattr__(self, "frames", owned(self.frames, "frames", np.float64, None, len(self.vertices), 3))
+
+    @property
+    def energy(self) -> float:
+        """Energy per Young's modulus [mm^3]."""
+        return self.stretching + self.bending
+
+    @property
+    def iterations(self) -> int:
+        """Of all steps."""
+        return sum(step.iterations for step in self.history)
 
 
 def line_angle(angle: Floats) -> Floats:

@@ -1,0 +1,155 @@
+"""Forward simulation: what shape a patterned flat sheet takes when it is heated.
+
+A thin non-Euclidean shell (Koiter energy) is followed from the flat sheet through small steps of temperature. Nothing
+here knows the target, so the sheet may buckle into the mirror image or another isometry, as a real one may.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from lce_solver import cholesky
+from lce_solver.errors import InputError
+from lce_solver.shell_energy import Reference, energy, parts, reference, residual_strain, stiffness
+from lce_solver.shell_minimise import Minimum, Solve, minimise
+from lce_solver.shell_patch import Shell, shell
+from lce_solver.types import Design, Floats, HeatingStep, Ints, Material, Prediction, Progress, owned, silent
+
+STEPS = 10
+ONSET = 2
+"""Step k of n goes to lambda^((k/n)^ONSET). A thin sheet buckles at strains of (thickness / size)^2. Where the first step
+goes far beyond, many short waves grow at once, and a sheet without twist ends in a wrong isometry. The path of heating is
+part of the answer: of a sheet with several isometries, another path may find another one. `heat` follows any path."""
+SETTLED = 1e-4
+"""The last step ends when a further iteration would save less than this times thickness^3 / 12."""
+PASSING = 1e-2
+"""The same for the others, times the square of the share of the strain: a sheet about to buckle has little to save."""
+FOUNDATION = 0.1
+"""Springs hold rigid motions in the preconditioner, in units of the stiffness of the sheet's longest bending wave."""
+LIMIT = 1000
+"""Iterations in one step."""
+
+
+@dataclass(frozen=True, eq=False)
+class Film:
+    """A patterned flat sheet, ready to be heated. With `dataclasses.replace` the same mesh takes another pattern."""
+
+    sheet: Shell
+    theta: Floats
+    """(n_f,) director [rad]."""
+    dtheta: Floats
+    """(n_f,) twist, top minus bottom [rad]."""
+    material: Material
+    thickness: float
+    """As prepared [mm]."""
+    ordering: cholesky.Plan
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.thickness) and self.thickness > 0):
+            msg = f"the film's thickness is {self.thickness:g} mm; give a positive length, for example 0.1"
+            raise InputError(msg)
+        for name in ("theta", "dtheta"):
+            object.__setattr__(self, name, owned(getattr(self, name), name, np.float64, len(self.sheet.faces)))
+
+    def at(self, lambda_: float) -> Reference:
+        """What the film wants to be when the stretch along the director is ``lambda_``."""
+        material = replace(self.material, lambda_=lambda_)
+        return reference(self.sheet, self.theta, self.dtheta, material, thickness=self.thickness)
+
+
+def film(uv: Floats, faces: Ints, theta: Floats, dtheta: Floats, *, material: Material, thickness: float) -> Film:
+    """Prepare the flat mesh ``uv`` (n_v, 2) [mm], ``faces`` (n_f, 3) with ``theta``, ``dtheta`` (n_f,) [rad].
+
+    Raises
+    ------
+    InputError
+        The mesh has flipped triangles or too few vertices, or the thickness [mm] is not positive.
+    """
+    sheet = shell(uv, faces)
+    return Film(sheet, theta, dtheta, material, thickness, cholesky.plan(sheet.uv, sheet.patch))
+
+
+def film_of(design: Design) -> Film:
+    """Prepare the sheet of a design."""
+    pattern = design.uv, design.surface.faces, design.theta, design.dtheta
+    return film(*pattern, material=design.material, thickness=design.thickness)
+
+
+def predict(
+    flat: Film,
+    *,
+    seed: int,
+    imperfection: float = 0.02,
+    steps: int = STEPS,
+    tolerance: float = SETTLED,
+    progress: Progress = silent,
+) -> Prediction:
+    """Heat the flat film from lambda = 1 to its material's, and return the shape that it takes.
+
+    Parameters
+    ----------
+    seed, imperfection : every vertex starts off the plane by normal noise, of this deviation in units of the thickness.
+    steps : of the heating, denser at its start.
+    tolerance : energy that a further iteration may still save, in units of Young's modulus x thickness^3 / 12.
+    progress : called before every iteration.
+    """
+    uv = flat.sheet.uv
+    height = imperfection * flat.thickness * np.random.default_rng(seed).standard_normal(len(uv))
+    shares = (np.arange(1, steps + 1) / steps) ** ONSET
+    tolerances = np.append(PASSING * shares[:-1] ** 2, tolerance)
+    return heat(flat, np.column_stack([uv, height]), flat.material.lambda_**shares, tolerances, progress=progress)
+
+
+def settle(flat: Film, start: Floats, *, tolerance: float = SETTLED, progress: Progress = silent) -> Prediction:
+    """Relax the hot film from ``start`` (n_v, 3) [mm]; from the target this gives the energy to compare others with."""
+    return heat(flat, start, np.array([flat.material.lambda_]), np.array([tolerance]), progress=progress)
+
+
+def heat(flat: Film, start: Floats, lambdas: Floats, tolerances: Floats, *, progress: Progress = silent) -> Prediction:
+    """Follow the equilibrium from ``start`` (n_v, 3) [mm] through ``lambdas`` (k,), each to its tolerance (k,)."""
+    before = now = np.array(start, dtype=np.float64)
+    history, frames = [], []
+    for step, (lambda_, tolerance) in enumerate(zip(lambdas, tolerances, strict=True)):
+        aim, done = flat.at(float(lambda_)), step / len(lambdas)
+        ahead = _extrapolate(flat.sheet, aim, before, now)
+        found = relax(flat, aim, ahead, tolerance, watch=partial(progress, "heating", done))
+        before, now = now, found.x
+        history.append(HeatingStep(float(lambda_), *parts(flat.sheet, aim, now), found.iterations, found.status))
+        frames.append(now)
+    progress("heating", 1.0)
+    strain = residual_strain(flat.sheet, aim, now)
+    last = history[-1]
+    return Prediction(now, last.stretching, last.bending, strain, last.status, tuple(history), np.array(frames))
+
+
+def _extrapolate(sheet: Shell, aim: Reference, before: Floats, now: Floats) -> Floats:
+    """Go on as in the last step, if that lowers the energy."""
+    ahead = 2 * now - before
+    return ahead if energy(sheet, aim, ahead)[0] < energy(sheet, aim, now)[0] else now
+
+
+def relax(
+    flat: Film, aim: Reference, start: Floats, tolerance: float, *, watch: Callable[[], None] = lambda: None
+) -> Minimum:
+    """Minimise the energy against ``aim`` from ``start`` (n_v, 3) [mm]; ``tolerance`` as for `predict`."""
+    sheet = flat.sheet
+    rigidity = aim.thickness**3 / 12
+    shares = np.bincount(sheet.faces.ravel(), np.repeat(sheet.area / 3, 3), minlength=len(sheet.uv))
+    springs = np.asarray(FOUNDATION * rigidity / sheet.size**4 * shares)
+
+    def factorise(x: Floats) -> Solve:
+        return cholesky.factorise(flat.ordering, stiffness(sheet, aim, x), springs)
+
+    return minimise(
+        lambda x: energy(sheet, aim, x),
+        factorise,
+        start,
+        tolerance=tolerance * rigidity,
+        longest=sheet.edge,
+        limit=LIMIT,
+        watch=watch,
+    )
