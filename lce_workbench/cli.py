@@ -100,6 +100,7 @@ def _parser() -> Parser:
         sub.add_argument("--out", type=Path, metavar="DIR", help="output folder; default out/NAME beside the job file")
         sub.add_argument("--set", nargs="+", action="extend", default=[], metavar="KEY=VALUE", dest="settings")
     for name, doc in (
+        ("predict", "Simulates the heating of a designed sheet and compares it with the target."),
         ("mask", "Draws the masks of a designed folder."),
         ("cad", "Builds the CAD files of a designed folder."),
     ):

@@ -16,8 +16,9 @@ from typing import Any
 
 import numpy as np
 
+from lce_solver.compare import Comparison
 from lce_solver.errors import EnvironmentFault, InputError
-from lce_solver.types import Design, Finding, Flattening, Ints, Material, Severity, Status, Surface
+from lce_solver.types import Design, Finding, Flattening, Ints, Material, Prediction, Severity, Status, Surface
 
 MANIFEST = "manifest.json"
 
@@ -165,6 +166,20 @@ def write_design(design: Design, path: Path) -> None:
         flipped=design.flattening.flipped,
         crossings=design.flattening.crossings,
     )
+
+
+def write_prediction(found: Prediction, judged: Comparison, folder: Path) -> None:
+    """Write `prediction.npz` (shapes) and `prediction.json` (figures)."""
+    np.savez(folder / "prediction.npz", vertices=found.vertices, frames=found.frames)
+    record = {
+        **asdict(judged),
+        "verdict": judged.verdict.name.lower(),
+        "mirrored": judged.mirrored,
+        "status": found.status.name.lower(),
+        "iterations": found.iterations,
+        "heating": [{**asdict(step), "status": step.status.name.lower()} for step in found.history],
+    }
+    (folder / "prediction.json").write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
 
 
 def read_design(path: Path) -> Design:

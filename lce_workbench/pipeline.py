@@ -1,4 +1,4 @@
-"""The stages in order, each from what the one before wrote: design, mask, cad."""
+"""The stages in order, each from what the one before wrote: design, predict, mask, cad."""
 
 from __future__ import annotations
 
@@ -15,8 +15,10 @@ from typing import Any
 
 import numpy as np
 
+from lce_solver.compare import REACH, Comparison, Verdict, compare
 from lce_solver.design import design
 from lce_solver.errors import EnvironmentFault, InputError, LceError, SolverError
+from lce_solver.shell import film_of, predict, settle
 from lce_solver.types import Design, Finding, Progress, Severity, Status, silent
 from lce_workbench import ROOT, __version__
 from lce_workbench.core import jobfile, material, target
@@ -39,6 +41,7 @@ from lce_workbench.outputs import (
     staged,
     write_design,
     write_manifest,
+    write_prediction,
 )
 
 Findings = tuple[Finding, ...]
@@ -154,6 +157,25 @@ def sheet_findings(job: Job) -> Findings:
     return tuple(found)
 
 
+def run_predict(run: Run) -> Findings:
+    """Heat the sheet and compare it with the target: `prediction.npz`, `prediction.json`."""
+    plan, spec = fabricable(read_design(run.folder / "design.npz")), run.job.prediction
+    film = film_of(plan)
+    found = predict(film, seed=spec.seed, imperfection=spec.imperfection, steps=spec.steps, progress=run.progress)
+    judged = compare(plan, found, settle(film, plan.surface.vertices, progress=run.progress))
+    write_prediction(found, judged, run.folder)
+    return (predicted(judged),)
+
+
+def predicted(judged: Comparison) -> Finding:
+    """Whether the heated sheet takes the target shape."""
+    severity = {Verdict.TARGET: Severity.INFO, Verdict.EQUILIBRIUM: Severity.WARNING}
+    text = (
+        f"{judged.verdict.value} ({judged.rms_pct:.2g}% rms, {judged.max_pct:.2g}% at most, of the target's diagonal)"
+    )
+    return Finding("prediction", severity.get(judged.verdict, Severity.ERROR), text, judged.rms_pct, REACH, "%")
+
+
 def run_mask(run: Run) -> Findings:
     """Draw both plates: `mask/bottom.*`, `mask/top.*`."""
     plan = fabricable(read_design(run.folder / "design.npz"))
@@ -232,16 +254,23 @@ def run_freecad(command: str, folder: Path) -> None:
         raise fault
 
 
-STAGES: dict[str, Callable[[Run], Findings]] = {"design": run_design, "mask": run_mask, "cad": run_cad}
+STAGES: dict[str, Callable[[Run], Findings]] = {
+    "design": run_design,
+    "predict": run_predict,
+    "mask": run_mask,
+    "cad": run_cad,
+}
 """The stages in the order of the work."""
 
-OUTPUTS = {"design": (), "mask": ("mask",), "cad": ("cad",)}
+OUTPUTS = {"design": (), "predict": ("prediction.npz", "prediction.json"), "mask": ("mask",), "cad": ("cad",)}
 """What a stage writes anew in a kept folder."""
 
 
 def _remove(path: Path) -> None:
     if path.is_dir():
         shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)
 
 
 def inputs(job: Job, base: Path) -> list[dict[str, Any]]:

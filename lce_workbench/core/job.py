@@ -165,6 +165,15 @@ class SolverSpec:
 
 
 @dataclass(frozen=True)
+class PredictionSpec:
+    """The simulated heating of the flat sheet."""
+
+    seed: int = param(1, "seed of the imperfection that the sheet starts with", low=0, high=2**31 - 1)
+    imperfection: float = param(0.02, "deviation of that imperfection, in thicknesses", low=0.0, high=1.0)
+    steps: int = param(10, "steps of the heating", low=1, high=1000)
+
+
+@dataclass(frozen=True)
 class Output:
     """What is written."""
 
@@ -186,4 +195,5 @@ class Job:
     marks: Marks = field(default_factory=Marks)
     spacer: Spacer = field(default_factory=Spacer)
     solver: SolverSpec = field(default_factory=SolverSpec)
+    prediction: PredictionSpec = field(default_factory=PredictionSpec)
     output: Output = field(default_factory=Output)

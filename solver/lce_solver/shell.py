@@ -21,9 +21,10 @@ from lce_solver.types import Design, Floats, HeatingStep, Ints, Material, Predic
 
 STEPS = 10
 ONSET = 2
-"""Step k of n goes to lambda^((k/n)^ONSET). A thin sheet buckles at strains of (thickness / size)^2. Where the first step
-goes far beyond, many short waves grow at once, and a sheet without twist ends in a wrong isometry. The path of heating is
-part of the answer: of a sheet with several isometries, another path may find another one. `heat` follows any path."""
+"""Step k of n goes to lambda^((k/n)^ONSET). A thin sheet buckles at strains of (thickness / size)^2. Where the first
+step goes far beyond, many short waves grow at once, and a sheet without twist ends in a wrong isometry. The path of
+heating is part of the answer: of a sheet with several isometries, another path may find another one. `heat` follows
+any path."""
 SETTLED = 1e-4
 """The last step ends when a further iteration would save less than this times thickness^3 / 12."""
 PASSING = 1e-2

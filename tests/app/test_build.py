@@ -15,6 +15,7 @@ import meshes
 import numpy as np
 import pytest
 from faults import BAD_JOBS, BAD_MESHES
+from scipy.spatial.transform import Rotation
 
 from lce_workbench import ROOT
 from lce_workbench.cli import main
@@ -33,6 +34,7 @@ CONTRACT = [
     "cad/bottom_plate.step", "cad/cell.FCStd", "cad/cell.glb", "cad/cell.step", "cad/channels_bottom.step",
     "cad/channels_top.step", "cad/spacer.step", "cad/top_plate.step", "design.npz", "domains.csv", "job.toml",
     "manifest.json", "mask/bottom.dxf", "mask/bottom.gds", "mask/top.dxf", "mask/top.gds",
+    "prediction.json", "prediction.npz",
 ]  # fmt: skip
 
 
@@ -68,7 +70,7 @@ def test_the_manifest_tells_the_truth(built):
     manifest = json.loads((built / "manifest.json").read_text())
     assert {f["path"]: f["sha256"] for f in manifest["files"]} == digests(built)
     assert manifest["exit_code"] == 0
-    assert manifest["stages"] == ["design", "mask", "cad"]
+    assert manifest["stages"] == ["design", "predict", "mask", "cad"]
     assert any(f["check"] == "material_estimate" for f in manifest["findings"])
 
 
@@ -91,8 +93,8 @@ def test_the_stages_alone_equal_the_build(built, job, tmp_path):
     out = tmp_path / "staged"
     assert main(["design", str(job), "--quiet", "--out", str(out)]) == 0
     assert sorted(p.name for p in out.iterdir()) == ["design.npz", "domains.csv", "job.toml", "manifest.json"]
-    assert main(["mask", str(out), "--quiet"]) == 0
-    assert main(["cad", str(out), "--quiet"]) == 0
+    for stage in ("predict", "mask", "cad"):
+        assert main([stage, str(out), "--quiet"]) == 0
     assert digests(out) == digests(built)
 
 
@@ -125,6 +127,19 @@ def test_npz_loads_without_pickle_and_has_the_contract_names(built):
         names = {"vertices", "faces", "uv", "theta", "dtheta", "stretch", "lambda_", "nu", "thickness"}
         assert names <= set(data.files)
         assert float(data["thickness"]) == pytest.approx(0.1)
+
+
+def test_the_prediction_is_the_distance_between_its_shape_and_the_target(built):
+    plan, record = read_design(built / "design.npz"), json.loads((built / "prediction.json").read_text())
+    found = np.load(built / "prediction.npz")["vertices"]
+    area = np.linalg.norm(np.cross(*np.diff(plan.surface.vertices[plan.surface.faces], axis=1).swapaxes(0, 1)), axis=1)
+    weight = np.bincount(plan.surface.faces.ravel(), np.repeat(area, 3))
+    turned, _ = Rotation.align_vectors(*(x - weight @ x / weight.sum() for x in (plan.surface.vertices, found)), weight)
+    p, q = (x - weight @ x / weight.sum() for x in (found, plan.surface.vertices))
+    rms = np.sqrt(weight @ ((turned.apply(p) - q) ** 2).sum(axis=1) / weight.sum())
+    assert record["rms_pct"] == pytest.approx(100 * rms / np.linalg.norm(np.ptp(q, axis=0)), rel=1e-6)
+    assert record["mirrored"] is False
+    assert {"max_pct", "energy_ratio", "residual_strain_rms"} <= set(record)
 
 
 def said(capsys, *argv):
