@@ -23,7 +23,7 @@ from lce_solver.types import Design, Finding, Progress, Severity, Status, silent
 from lce_workbench import ROOT, __version__
 from lce_workbench.core import jobfile, material, target
 from lce_workbench.core.cell import Cell, assemble
-from lce_workbench.core.channels import empty_domains, hatch
+from lce_workbench.core.channels import ChannelField, empty_domains, hatch
 from lce_workbench.core.domains import PLATES, partition
 from lce_workbench.core.frame import arrange
 from lce_workbench.core.job import Job
@@ -125,7 +125,7 @@ def run_design(run: Run) -> Findings:
     (run.folder / "job.toml").write_text(jobfile.dump(rebased(job, run.base, run.folder)), encoding="utf-8")
     write_design(result, run.folder / "design.npz")
     domains = partition(result)
-    counts = [hatch(domains, plate, job.channels).counts for plate in PLATES]
+    counts = [ChannelField(domains, plate, job.channels).counts for plate in PLATES]
     write_table(domains, counts, run.folder / "domains.csv")
     return (*said, *told, *result.findings, *target.sized(result, job), *sheet_findings(job))
 
@@ -183,9 +183,9 @@ def run_mask(run: Run) -> Findings:
     (run.folder / "mask").mkdir()
     found: list[Finding] = []
     for k, plate in enumerate(PLATES):
-        channels = hatch(domains, plate, run.job.channels)
-        mask = compose(frame, domains, channels, run.job)
-        found += (*empty_domains(channels), *check(mask, domains, channels, frame, run.job))
+        field = ChannelField(domains, plate, run.job.channels)
+        mask = compose(frame, field, run.job)
+        found += (*empty_domains(field), *check(mask, field, frame, run.job))
         for j, name in enumerate(run.job.output.masks):
             run.progress(f"mask {plate}.{name}", (k + j / len(run.job.output.masks)) / len(PLATES))
             EXPORTERS[name](mask, run.folder / "mask" / f"{plate}.{name}")

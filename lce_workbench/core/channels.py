@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,27 +75,67 @@ class Channels:
         return np.asarray(np.bincount(self.domain, self.length * self.width, len(self.angle)), dtype=np.float64)
 
 
+@dataclass(frozen=True, eq=False)
+class ChannelField:
+    """The channels of one plate, made block by block whenever they are asked for.
+
+    So memory does not grow with the plate, and every pass yields the same channels to the bit.
+    """
+
+    domains: Domains
+    plate: Plate
+    spec: ChannelSpec
+
+    def __iter__(self) -> Iterator[Channels]:
+        """Yield the channels of `BLOCK` domains at a time, all of each; domains are numbered through."""
+        outlines, angle = self.domains.corners, self.domains.angle(self.plate)
+        for first in range(0, len(self.domains), BLOCK):
+            rows = slice(first, first + BLOCK)
+            centre, length, domain = _fill(outlines[rows], angle[rows], self.spec)
+            yield Channels(self.plate, centre, angle, length, domain + first, self.spec.width, self.spec.depth)
+
+    @cached_property
+    def counts(self) -> Ints:
+        """(n_d,) channels in each domain.
+
+        Raises
+        ------
+        InputError
+            No domain is large enough for a single channel.
+        """
+        counts = np.zeros(len(self.domains), dtype=np.int64)
+        for part in self:
+            owners, found = np.unique(part.domain, return_counts=True)
+            counts[owners] = found
+        _refuse_none(int(counts.sum()), self.spec)
+        return counts
+
+
 def hatch(domains: Domains, plate: Plate, spec: ChannelSpec) -> Channels:
     """Fill every domain with channels along its director on ``plate`` (paper, methods: 1 um wide, 2 um pitch).
+
+    All channels at once; `ChannelField` is the way to treat a large plate.
 
     Raises
     ------
     InputError
         No domain is large enough for a single channel.
     """
-    triangles, angle = domains.corners, domains.angle(plate)
-    starts = range(0, len(domains), BLOCK)
-    parts = [_fill(triangles[i : i + BLOCK], angle[i : i + BLOCK], spec) for i in starts]
-    centre = np.concatenate([p[0] for p in parts])
-    if not len(centre):
+    parts = list(ChannelField(domains, plate, spec))
+    centre, length, domain = (
+        np.concatenate([getattr(part, name) for part in parts]) for name in ("centre", "length", "domain")
+    )
+    _refuse_none(len(length), spec)
+    return Channels(plate, centre, domains.angle(plate), length, domain, spec.width, spec.depth)
+
+
+def _refuse_none(count: int, spec: ChannelSpec) -> None:
+    if not count:
         msg = (
             f"channels.width_um = {spec.width_um:g} with guard_um = {spec.guard_um:g} fits into none of the domains; "
             "make the channels narrower or domains.size_um larger"
         )
         raise InputError(msg)
-    length = np.concatenate([p[1] for p in parts])
-    domain = np.concatenate([p[2] + i for p, i in zip(parts, starts, strict=True)])
-    return Channels(plate, centre, angle, length, domain, spec.width, spec.depth)
 
 
 def corners(channels: Channels, rows: slice = slice(None)) -> Floats:
@@ -109,22 +150,9 @@ def corners(channels: Channels, rows: slice = slice(None)) -> Floats:
     return polygons
 
 
-def blocks(channels: Channels, size: int = 8192) -> Iterator[slice]:
-    """Rows of the channels in runs of about ``size`` that never split a domain."""
-    start, n = 0, len(channels)
-    while start < n:
-        stop = n
-        if start + size < n:
-            stop = int(np.searchsorted(channels.domain, channels.domain[start + size]))
-            if stop <= start:  # one domain larger than a block
-                stop = int(np.searchsorted(channels.domain, channels.domain[start], side="right"))
-        yield slice(start, stop)
-        start = stop
-
-
-def empty_domains(channels: Channels) -> tuple[Finding, ...]:
+def empty_domains(field: ChannelField) -> tuple[Finding, ...]:
     """Report the domains too small for one channel (or folded); they stay empty."""
-    empty = np.flatnonzero(channels.counts == 0)
+    empty = np.flatnonzero(field.counts == 0)
     if not len(empty):
         return ()
     shown = ", ".join(map(str, empty[:20])) + (" and more" if len(empty) > 20 else "")
@@ -132,8 +160,8 @@ def empty_domains(channels: Channels) -> tuple[Finding, ...]:
         Finding(
             "empty_domains",
             Severity.WARNING,
-            f"{len(empty)} domains of the {channels.plate} plate are too small for one channel and stay empty; "
-            f"their rows of domains.csv have channels_{channels.plate} = 0",
+            f"{len(empty)} domains of the {field.plate} plate are too small for one channel and stay empty; "
+            f"their rows of domains.csv have channels_{field.plate} = 0",
             value=float(len(empty)),
             limit=0.0,
             where=f"domain {shown}",

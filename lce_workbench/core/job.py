@@ -177,7 +177,9 @@ class PredictionSpec:
 class Output:
     """What is written."""
 
-    masks: tuple[str, ...] = param(("gds", "dxf"), "mask formats: gds, dxf")
+    masks: tuple[str, ...] = param(
+        ("gds", "oas", "dxf"), "mask formats: gds, oas, dxf (R2000, for CAD), r12.dxf (for the writer, um), cif"
+    )
     freecad: bool = param(True, "write the FreeCAD document cad/cell.FCStd (needs freecadcmd)")
     step_domains: tuple[int, ...] = param((), "domains whose channels become solids; default: the most central")
 

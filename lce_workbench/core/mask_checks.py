@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lce_solver.types import Finding, Floats, Ints, Severity
-from lce_workbench.core.channels import MIN_LENGTH, Channels, blocks
+from lce_workbench.core.channels import MIN_LENGTH, ChannelField
 from lce_workbench.core.domains import Domains
 from lce_workbench.core.frame import Frame
 from lce_workbench.core.job import ChannelSpec, Job
@@ -139,48 +139,50 @@ CHANNEL_CHECKS: dict[str, Check] = {
 """Measured on every channel. Lands between channels of different domains are at least two insets wide."""
 
 
-def check(mask: Mask, domains: Domains, channels: Channels, frame: Frame, job: Job) -> tuple[Finding, ...]:
+def check(mask: Mask, field: ChannelField, frame: Frame, job: Job) -> tuple[Finding, ...]:
     """Measure a mask; a finding is an error where it leaves its limit.
 
     Parameters
     ----------
-    channels : what ``CHANNELS`` was made of; only the domain of each channel is used.
+    field : what ``CHANNELS`` was made of; only the domain of each channel is used.
     """
     return (
-        *_channel_findings(mask, domains, channels, job.channels),
-        _area(mask, domains, job.channels),
+        *_channel_findings(mask, field),
         *_polygon_findings(mask),
-        _border(mask, domains),
+        _border(mask, field.domains),
         *_mark_findings(mask, frame, job),
         *_extent_findings(mask),
     )
 
 
-def _channel_findings(mask: Mask, domains: Domains, channels: Channels, spec: ChannelSpec) -> Iterator[Finding]:
-    """The worst value of every channel check."""
+def _channel_findings(mask: Mask, field: ChannelField) -> Iterator[Finding]:
+    """The worst value of every channel check, and the area of all channels."""
     worst: dict[str, tuple[float, int]] = {}
-    borders, direction = _points(domains.corners / NM).T, domains.written(mask.plate)
-    for rows in blocks(channels):
-        corners = np.ascontiguousarray(_points(mask.channels[rows]).T)
+    exposed = 0.0
+    borders, direction = _points(field.domains.corners / NM).T, field.domains.written(mask.plate)
+    for part, polygons in zip(field, mask.layers["CHANNELS"], strict=True):
+        if not len(part):
+            continue
+        corners = np.ascontiguousarray(_points(polygons).T)
         seen = -np.conj(corners[::-1]) if mask.plate == "top" else corners
-        block = Block(corners, seen, channels.domain[rows], borders, direction, spec)
+        block = Block(corners, seen, part.domain, borders, direction, field.spec)
         for name, item in CHANNEL_CHECKS.items():
             values, domain = item.measure(block)
             if len(values):
                 i = int(np.argmin(values) if item.at_least else np.argmax(values))
                 found = float(values[i]), int(domain[i])
                 worst[name] = (min if item.at_least else max)(worst.get(name, found), found)
+        exposed += float(_cross(corners[2] - corners[0], corners[3] - corners[1]).sum()) / 2
     for name, (value, place) in worst.items():
         item = CHANNEL_CHECKS[name]
-        measured = Measurement(value, item.limit(spec), item.at_least, item.unit, f"domain {place}")
+        measured = Measurement(value, item.limit(field.spec), item.at_least, item.unit, f"domain {place}")
         yield _judged(mask, name, item.quantity, measured)
+    yield _area(mask, field, exposed)
 
 
-def _area(mask: Mask, domains: Domains, spec: ChannelSpec) -> Finding:
-    """Channel area, from the integers, as a fraction of sheet area x duty."""
-    corners = (_points(part) for part in _parts(mask.channels))
-    exposed = sum(float(_cross(p[:, 2] - p[:, 0], p[:, 3] - p[:, 1]).sum()) / 2 for p in corners)
-    ratio = exposed * NM**2 / (float(np.abs(domains.area).sum()) * spec.duty)
+def _area(mask: Mask, field: ChannelField, exposed: float) -> Finding:
+    """Channel area [nm2], from the integers, as a fraction of sheet area x duty."""
+    ratio = exposed * NM**2 / (float(np.abs(field.domains.area).sum()) * field.spec.duty)
     text = "channel area / (sheet area x duty)"
     return _judged(mask, "channel_area", text, Measurement(ratio, 1 - AREA_LOSS, True), Severity.WARNING)
 
@@ -201,7 +203,7 @@ def _polygon_findings(mask: Mask) -> Iterator[Finding]:
 
 def _border(mask: Mask, domains: Domains) -> Finding:
     """Domain borders, mirrored back on the top plate, against the design."""
-    (group,) = mask.layers["DOMAINS"]
+    group = np.concatenate([*mask.layers["DOMAINS"]])
     seen = flipped(group) if mask.plate == "top" else group
     error = np.abs(seen - domains.corners / NM).max(axis=(1, 2))
     worst = int(error.argmax())

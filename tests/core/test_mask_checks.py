@@ -5,6 +5,7 @@ import pytest
 from sheets import both_masks, design
 
 from lce_solver.types import Severity
+from lce_workbench.core.channels import ChannelField
 from lce_workbench.core.domains import partition
 from lce_workbench.core.job import Job
 from lce_workbench.core.mask import flipped
@@ -16,12 +17,12 @@ FRAME, CHANNELS, MASKS = both_masks(DOMAINS, JOB)
 
 
 def found(mask, domains=DOMAINS):
-    return {f.check: f for f in check(mask, domains, CHANNELS[mask.plate], FRAME, JOB)}
+    return {f.check: f for f in check(mask, ChannelField(domains, mask.plate, JOB.channels), FRAME, JOB)}
 
 
 def changed(mask, layer, change):
     """The mask with a changed copy of one layer."""
-    copy = mask.layers[layer][0].copy()
+    copy = np.concatenate([*mask.layers[layer]])
     result = change(copy)
     return replace(mask, layers={**mask.layers, layer: (copy if result is None else result,)})
 
@@ -151,5 +152,10 @@ def test_a_forgotten_mirror_is_seen():
 
 
 def test_the_angle_check_knows_the_sign_of_the_twist():
-    wrong = replace(DOMAINS, dtheta=-DOMAINS.dtheta)
-    assert found(MASKS["top"], wrong)["channel_angle"].value > 0.1
+    def turn(p):
+        """Each channel about its middle, from -(theta + dtheta / 2) to -(theta - dtheta / 2)."""
+        middle = p.mean(axis=1, keepdims=True)
+        points = (p - middle) @ [1, 1j] * np.exp(1j * DOMAINS.dtheta[CHANNELS["top"].domain])[:, None]
+        return np.rint(middle + np.stack([points.real, points.imag], axis=2)).astype(np.int32)
+
+    assert found(changed(MASKS["top"], "CHANNELS", turn))["channel_angle"].value > 0.1

@@ -1,7 +1,6 @@
 """ezdxf and KLayout read what we write."""
 
 import time
-from pathlib import Path
 
 import ezdxf
 import klayout.db as kdb
@@ -84,8 +83,3 @@ def test_two_runs_are_the_same_to_the_byte(files, tmp_path):
     dxf.write(masks["top"], tmp_path / "again.dxf")
     assert (tmp_path / "again.dxf").read_bytes() == (folder / "top.dxf").read_bytes()
     assert not ezdxf.options.write_fixed_meta_data_for_testing
-
-
-def test_a_full_disk_is_an_os_error(files):
-    with pytest.raises(OSError, match="No space left"):
-        dxf.write(files[1]["top"], Path("/dev/full"))
