@@ -140,10 +140,12 @@ class Plates:
 
 @dataclass(frozen=True)
 class Marks:
-    """Alignment marks at the four corners, outside the sheet."""
+    """Alignment marks at the corners and the middles of the sides, outside the sheet."""
 
     clearance_mm: float = param(2.0, "from the sheet's bounding box to the marks", unit="mm", low=0.1, high=50.0)
     tolerance_um: float = param(10.0, "largest accepted mismatch of the plates", unit="um", above=0.0, high=100.0)
+    grating: bool = param(True, "fill the marks with the channels' grating, so that they are dark in the microscope")
+    label: str = param("", "your own words beside the design's code: capital letters, digits, space, + - . /")
 
 
 @dataclass(frozen=True)
@@ -151,7 +153,7 @@ class Spacer:
     """Mylar strips on the two glue edges (left and right); the other two edges stay open for filling."""
 
     strip_mm: float = param(3.0, "width of a strip", unit="mm", above=0.0, high=50.0)
-    clearance_mm: float = param(1.0, "from the marks to the strips", unit="mm", low=0.0, high=50.0)
+    clearance_mm: float = param(1.0, "between strips and sheet, and strips and marks", unit="mm", low=0.0, high=50.0)
     glue_mm: float = param(2.0, "free glass outside each strip for the glue", unit="mm", low=0.0, high=50.0)
 
 

@@ -13,7 +13,7 @@ from lce_workbench.core.channels import ChannelField, corners
 from lce_workbench.core.domains import Plate
 from lce_workbench.core.frame import Frame
 from lce_workbench.core.job import Job
-from lce_workbench.core.marks import marks
+from lce_workbench.core.marks import exposed, fingerprint
 from lce_workbench.core.units import NM
 
 Nanometres = NDArray[np.int32]
@@ -93,7 +93,7 @@ def compose(frame: Frame, field: ChannelField, job: Job) -> Mask:
     """
     plate = field.plate
     shapes = {
-        **marks(frame, plate, job.marks),
+        **exposed(frame, plate, job, fingerprint(field.domains, field.spec)),
         "PLATE": frame.plate.ring[None],
         "DOMAINS": field.domains.corners,
         "SPACER": np.stack([strip.ring for strip in frame.strips]),

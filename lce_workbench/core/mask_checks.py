@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from lce_solver.types import Finding, Floats, Ints, Severity
 from lce_workbench.core.channels import MIN_LENGTH, ChannelField
 from lce_workbench.core.domains import Domains
-from lce_workbench.core.frame import Frame
+from lce_workbench.core.frame import SPILL, Frame
+from lce_workbench.core.gaps import smallest_gap
 from lce_workbench.core.job import ChannelSpec, Job
 from lce_workbench.core.mask import EXPOSED, Mask, Nanometres, flipped, written
 from lce_workbench.core.units import NM
@@ -212,18 +213,29 @@ def _border(mask: Mask, domains: Domains) -> Finding:
 
 
 def _mark_findings(mask: Mask, frame: Frame, job: Job) -> Iterator[Finding]:
-    """Marks and labels stay clear of the sheet, of the spacer and of each other."""
-    marks = np.concatenate([_boxes(group) for name in ("MARKS", "LABELS") for group in mask.layers[name]])
-    sheet = _boxes(written(frame.sheet.ring[None], mask.plate))
+    """Marks and labels stay clear of the sheet, of what is filled, of the spacer and of each other."""
+    groups = {name: np.concatenate([*mask.layers[name]]) for name in ("MARKS", "LABELS")}
+    marks = np.concatenate([_boxes(group) for group in groups.values()])
+    sheet, fill = (_boxes(written(region.ring[None], mask.plate)) for region in (frame.sheet, frame.fill))
     spacer = np.concatenate([_boxes(group) for group in mask.layers["SPACER"]])
-    each_other = _gaps(marks, marks)
-    np.fill_diagonal(each_other, np.inf)
-    for name, text, gaps, least in (
-        ("marks_sheet", "clearance from the sheet to the marks", _gaps(marks, sheet), job.marks.clearance_mm / NM),
-        ("marks_spacer", "clearance from the marks to the spacer", _gaps(marks, spacer), job.spacer.clearance_mm / NM),
-        ("marks_disjoint", "smallest gap between two polygons of marks and labels", each_other, ROUNDING),
+    clear, beside = job.marks.clearance_mm, job.spacer.clearance_mm
+    for name, text, gap, least in (
+        ("marks_sheet", "clearance from the sheet to the marks", _gaps(marks, sheet).min(), clear / NM),
+        ("marks_fill", "clearance from the filled area to the marks", _gaps(marks, fill).min(), (clear - SPILL) / NM),
+        (
+            "marks_spacer",
+            "clearance from the marks to the spacer",
+            _gaps(marks, spacer).min(),
+            beside / NM,
+        ),
+        (
+            "marks_disjoint",
+            "smallest gap between two polygons of marks and labels",
+            smallest_gap(np.concatenate([*groups.values()]).astype(np.float64)),
+            ROUNDING,
+        ),
     ):
-        yield _judged(mask, name, text, Measurement(float(gaps.min()), least - ROUNDING, True, "nm"))
+        yield _judged(mask, name, text, Measurement(float(gap), least - ROUNDING, True, "nm"))
 
 
 def _extent_findings(mask: Mask) -> Iterator[Finding]:

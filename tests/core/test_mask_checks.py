@@ -94,7 +94,11 @@ def onto_the_sheet(p):
 
 
 def onto_the_spacer(p):
-    p[0, :, 0] += round(FRAME.strips[0].x1 / 1e-6) - p[0, :, 0].max()
+    p[0, :, 0] += round(FRAME.strips[0].x0 / 1e-6) - p[0, :, 0].max()
+
+
+def into_the_fill(p):
+    p[0] += np.rint(np.array([0.0, FRAME.fill.y0 / 1e-6]) - p[0].mean(axis=0)).astype(np.int32)
 
 
 def onto_the_next(p):
@@ -112,6 +116,7 @@ FAULTS = {
     "polygon_edge": ("LABELS", merge_corners),
     "domain_border": ("DOMAINS", shift_first((2, 0))),
     "marks_sheet": ("MARKS", onto_the_sheet),
+    "marks_fill": ("MARKS", into_the_fill),
     "marks_spacer": ("MARKS", onto_the_spacer),
     "marks_disjoint": ("MARKS", onto_the_next),
     "extent": ("PLATE", lambda p: p * 9),

@@ -10,6 +10,7 @@ import pytest
 from sheets import both_masks, design
 
 from lce_workbench.core.domains import partition
+from lce_workbench.core.job import Job, Marks
 from lce_workbench.core.mask import LAYERS, Mask
 from lce_workbench.export import EXPORTERS, cif, dxf, oasis
 from lce_workbench.export.digits import hexadecimals, integers, thousandths
@@ -46,7 +47,7 @@ def files(tmp_path_factory):
     """A sheet with channels at all distances from the origin that occur, in every format."""
     folder = tmp_path_factory.mktemp("formats")
     domains = partition(design(2, 3, width=0.5, height=0.6))
-    _, _, masks = both_masks(domains)
+    _, _, masks = both_masks(domains, Job(marks=Marks(grating=False)))
     for plate, mask in masks.items():
         for name, write in EXPORTERS.items():
             write(mask, folder / f"{plate}.{name}")
