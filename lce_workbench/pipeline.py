@@ -21,13 +21,13 @@ from lce_solver.errors import EnvironmentFault, InputError, LceError, SolverErro
 from lce_solver.shell import film_of, predict, settle
 from lce_solver.types import Design, Finding, Progress, Severity, Status, silent
 from lce_workbench import ROOT, __version__
-from lce_workbench.core import jobfile, material, target
+from lce_workbench.core import align, jobfile, material, target
 from lce_workbench.core.cell import Cell, assemble
 from lce_workbench.core.channels import ChannelField, empty_domains, hatch
 from lce_workbench.core.domains import PLATES, partition
 from lce_workbench.core.frame import arrange
 from lce_workbench.core.job import Job
-from lce_workbench.core.marks import marks
+from lce_workbench.core.marks import fingerprint, marks
 from lce_workbench.core.mask import compose
 from lce_workbench.core.mask_checks import check
 from lce_workbench.export import EXPORTERS
@@ -180,7 +180,10 @@ def run_mask(run: Run) -> Findings:
     """Draw both plates: `mask/bottom.*`, `mask/top.*`."""
     plan = fabricable(read_design(run.folder / "design.npz"))
     domains, frame = partition(plan), arrange(plan.uv, run.job)
-    (run.folder / "mask").mkdir()
+    folder = run.folder / "mask"
+    folder.mkdir()
+    form = align.form(frame, run.job, fingerprint(domains, run.job.channels))
+    (folder / "readings.csv").write_text(form, encoding="ascii")
     found: list[Finding] = []
     for k, plate in enumerate(PLATES):
         field = ChannelField(domains, plate, run.job.channels)
@@ -188,7 +191,7 @@ def run_mask(run: Run) -> Findings:
         found += (*empty_domains(field), *check(mask, field, frame, run.job))
         for j, name in enumerate(run.job.output.masks):
             run.progress(f"mask {plate}.{name}", (k + j / len(run.job.output.masks)) / len(PLATES))
-            EXPORTERS[name](mask, run.folder / "mask" / f"{plate}.{name}")
+            EXPORTERS[name](mask, folder / f"{plate}.{name}")
     run.progress("mask", 1.0)
     return tuple(found)
 
