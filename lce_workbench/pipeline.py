@@ -25,8 +25,10 @@ from lce_workbench.core import align, jobfile, material, target
 from lce_workbench.core.cell import Cell, assemble
 from lce_workbench.core.channels import ChannelField, empty_domains, hatch
 from lce_workbench.core.domains import PLATES, partition
+from lce_workbench.core.fields import left_out
 from lce_workbench.core.frame import arrange
 from lce_workbench.core.job import Job
+from lce_workbench.core.job_sheet import job_sheet, totals
 from lce_workbench.core.marks import fingerprint, marks
 from lce_workbench.core.mask import compose
 from lce_workbench.core.mask_checks import check
@@ -182,16 +184,19 @@ def run_mask(run: Run) -> Findings:
     domains, frame = partition(plan), arrange(plan.uv, run.job)
     folder = run.folder / "mask"
     folder.mkdir()
-    form = align.form(frame, run.job, fingerprint(domains, run.job.channels))
-    (folder / "readings.csv").write_text(form, encoding="ascii")
-    found: list[Finding] = []
+    code = fingerprint(domains, run.job.channels)
+    (folder / "readings.csv").write_text(align.form(frame, run.job, code), encoding="ascii")
+    found: list[Finding] = [*left_out(frame, run.job)]
+    counted = {}
     for k, plate in enumerate(PLATES):
         field = ChannelField(domains, plate, run.job.channels)
         mask = compose(frame, field, run.job)
         found += (*empty_domains(field), *check(mask, field, frame, run.job))
+        counted[plate] = totals(mask)
         for j, name in enumerate(run.job.output.masks):
             run.progress(f"mask {plate}.{name}", (k + j / len(run.job.output.masks)) / len(PLATES))
             EXPORTERS[name](mask, folder / f"{plate}.{name}")
+    (folder / "job_sheet.txt").write_text(job_sheet(frame, run.job, counted, code), encoding="ascii")
     run.progress("mask", 1.0)
     return tuple(found)
 

@@ -19,6 +19,7 @@ from lce_workbench.core.frame import EDGE, MARK_BOX, Frame
 from lce_workbench.core.job import ChannelSpec, Job, Marks
 from lce_workbench.core.shapes import (
     LAND,
+    SMALL,
     STENCIL,
     Shape,
     box,
@@ -52,8 +53,6 @@ RINGS = 12
 """Moire rings; with pitches 20 and 21 um the fringes move 20 times as far as the plates."""
 PIXEL = 14.0
 """Side of one dot of a large letter [um]."""
-SMALL = 6.0
-"""Side of one dot of a vernier's digits [um]."""
 
 ANGLE: dict[Plate, float] = {"bottom": np.pi / 2, "top": 0.0}
 """Direction of the grating that fills the marks [rad]."""

@@ -8,9 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lce_solver.errors import InputError
 from lce_solver.types import Floats
 from lce_workbench.core.channels import ChannelField, corners
 from lce_workbench.core.domains import Plate
+from lce_workbench.core.fields import fields
 from lce_workbench.core.frame import Frame
 from lce_workbench.core.job import Job
 from lce_workbench.core.marks import exposed, fingerprint
@@ -22,13 +24,14 @@ LAYERS: dict[str, int] = {
     "CHANNELS": 1,
     "MARKS": 2,
     "LABELS": 3,
+    "TEST": 4,
     "PLATE": 10,
     "DOMAINS": 11,
     "SPACER": 12,
 }
 """Layer names (DXF) and numbers (GDSII, datatype 0), in the order in which they are written."""
 
-EXPOSED = ("CHANNELS", "MARKS", "LABELS")
+EXPOSED = ("CHANNELS", "MARKS", "LABELS", "TEST")
 """Layers that the laser writes; the others are for orientation."""
 
 NAMES: dict[Plate, str] = {"bottom": "LCE_BOTTOM", "top": "LCE_TOP"}
@@ -90,10 +93,17 @@ def compose(frame: Frame, field: ChannelField, job: Job) -> Mask:
 
     The top plate is mirrored, because its patterned face looks down in the cell. Resist -> PDMS -> epoxy mirrors
     twice, so a master has the handedness of its epoxy plate.
+
+    Raises
+    ------
+    InputError
+        Lines or lands are finer than the writer's mode, or a label or test field is not known.
     """
+    _refuse_too_fine(job)
     plate = field.plate
     shapes = {
         **exposed(frame, plate, job, fingerprint(field.domains, field.spec)),
+        "TEST": fields(frame, job),
         "PLATE": frame.plate.ring[None],
         "DOMAINS": field.domains.corners,
         "SPACER": np.stack([strip.ring for strip in frame.strips]),
@@ -101,3 +111,18 @@ def compose(frame: Frame, field: ChannelField, job: Job) -> Mask:
     layers: dict[str, Iterable[Nanometres]] = {name: (written(shape, plate),) for name, shape in shapes.items()}
     layers["CHANNELS"] = WrittenChannels(field)
     return Mask(plate, {name: layers[name] for name in LAYERS})
+
+
+def _refuse_too_fine(job: Job) -> None:
+    finest = job.output.writer_um
+    for key, found, fault in (
+        ("width_um", job.channels.width_um, "cannot be written"),
+        ("spacing_um", job.channels.spacing_um, "would merge its neighbours"),
+        ("guard_um", 2 * job.channels.guard_um, "doubled, would merge channels across the domains' borders"),
+    ):
+        if found < finest:
+            msg = (
+                f"channels.{key} = {getattr(job.channels, key):g} {fault} by a writer whose finest line and land is "
+                f"output.writer_um = {finest:g} um; make it larger or choose a finer mode"
+            )
+            raise InputError(msg)

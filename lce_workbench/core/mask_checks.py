@@ -30,6 +30,9 @@ MAX_ANGLE = 1e-3
 FULL_WEIGHT = 1e6
 """A domain with less channel than this counts in proportion: 1 nm turns a single short channel visibly [nm]."""
 
+MAX_CORNERS = 4000
+"""Corners of a polygon that every reader of GDSII takes."""
+
 MAX_REACH = 1e8
 """Half the side of the largest plate the writer takes, 200 mm [nm]."""
 
@@ -189,17 +192,25 @@ def _area(mask: Mask, field: ChannelField, exposed: float) -> Finding:
 
 
 def _polygon_findings(mask: Mask) -> Iterator[Finding]:
-    """Convexity and edge length of every polygon of every layer."""
-    turn, edge = (np.inf, ""), (np.inf, "")
+    """Convexity, edge length and number of corners of every polygon of every layer."""
+    turn, edge, most = (np.inf, ""), (np.inf, ""), (0, "")
     for name, groups in mask.layers.items():
         for part in (part for group in groups for part in _parts(group)):
             corners = np.ascontiguousarray(_points(part).T)
             side = np.roll(corners, -1, axis=0) - corners
             turn = min(turn, (float(_cross(side, np.roll(side, -1, axis=0)).min()), name))
             edge = min(edge, (float(np.abs(side).min()), name))
-    text = "smallest turn at a corner (positive: convex, counter-clockwise)"
-    yield _judged(mask, "polygon_convex", text, Measurement(turn[0], 1.0, True, "nm2", turn[1]))
-    yield _judged(mask, "polygon_edge", "shortest edge of a polygon", Measurement(edge[0], 1.0, True, "nm", edge[1]))
+            most = max(most, (len(corners), name))
+    for check, text, found in (
+        (
+            "polygon_convex",
+            "smallest turn at a corner (positive: convex, counter-clockwise)",
+            Measurement(turn[0], 1.0, True, "nm2", turn[1]),
+        ),
+        ("polygon_edge", "shortest edge of a polygon", Measurement(edge[0], 1.0, True, "nm", edge[1])),
+        ("polygon_corners", "most corners of a polygon", Measurement(most[0], MAX_CORNERS, False, "", most[1])),
+    ):
+        yield _judged(mask, check, text, found)
 
 
 def _border(mask: Mask, domains: Domains) -> Finding:
@@ -213,15 +224,22 @@ def _border(mask: Mask, domains: Domains) -> Finding:
 
 
 def _mark_findings(mask: Mask, frame: Frame, job: Job) -> Iterator[Finding]:
-    """Marks and labels stay clear of the sheet, of what is filled, of the spacer and of each other."""
-    groups = {name: np.concatenate([*mask.layers[name]]) for name in ("MARKS", "LABELS")}
-    marks = np.concatenate([_boxes(group) for group in groups.values()])
+    """Marks, labels and test fields stay clear of the sheet, of what is filled, of the spacer and of each other."""
+    groups = {name: np.concatenate([*mask.layers[name]]) for name in ("MARKS", "LABELS", "TEST")}
+    boxes = {name: _boxes(group) for name, group in groups.items()}
+    marks, dry = np.concatenate([*boxes.values()]), np.concatenate([boxes["MARKS"], boxes["LABELS"]])
     sheet, fill = (_boxes(written(region.ring[None], mask.plate)) for region in (frame.sheet, frame.fill))
     spacer = np.concatenate([_boxes(group) for group in mask.layers["SPACER"]])
     clear, beside = job.marks.clearance_mm, job.spacer.clearance_mm
+    unfilled = max(clear - SPILL, 0.0)
     for name, text, gap, least in (
         ("marks_sheet", "clearance from the sheet to the marks", _gaps(marks, sheet).min(), clear / NM),
-        ("marks_fill", "clearance from the filled area to the marks", _gaps(marks, fill).min(), (clear - SPILL) / NM),
+        (
+            "marks_fill",
+            "clearance from the filled area to the marks",
+            _gaps(dry, fill).min(),
+            unfilled / NM,
+        ),
         (
             "marks_spacer",
             "clearance from the marks to the spacer",
@@ -230,7 +248,7 @@ def _mark_findings(mask: Mask, frame: Frame, job: Job) -> Iterator[Finding]:
         ),
         (
             "marks_disjoint",
-            "smallest gap between two polygons of marks and labels",
+            "smallest gap between two polygons of marks, labels, test fields",
             smallest_gap(np.concatenate([*groups.values()]).astype(np.float64)),
             ROUNDING,
         ),
@@ -240,10 +258,12 @@ def _mark_findings(mask: Mask, frame: Frame, job: Job) -> Iterator[Finding]:
 
 def _extent_findings(mask: Mask) -> Iterator[Finding]:
     """Everything lies on the writer's largest plate, and what is exposed lies on this one."""
-    bounds = {name: np.array([_bounds(group) for group in groups]) for name, groups in mask.layers.items()}
-    reach = max(float(np.abs(found).max()) for found in bounds.values())
+    bounds = {
+        name: np.array([_bounds(group) for group in groups if len(group)]) for name, groups in mask.layers.items()
+    }
+    reach = max(float(np.abs(found).max(initial=0)) for found in bounds.values())
     yield _judged(mask, "extent", "largest coordinate", Measurement(reach, MAX_REACH, False, "nm"))
-    plate, exposed = bounds["PLATE"][0], np.concatenate([bounds[name] for name in EXPOSED])
+    plate, exposed = bounds["PLATE"][0], np.concatenate([bounds[name].reshape(-1, 4) for name in EXPOSED])
     inside = min((exposed - plate)[:, :2].min(), (plate - exposed)[:, 2:].min())
     text = "smallest distance from what is exposed to the plate's edge"
     yield _judged(mask, "plate_margin", text, Measurement(float(inside), 0.0, True, "nm"))

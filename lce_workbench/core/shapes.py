@@ -21,6 +21,9 @@ Shape = Floats
 LAND = 1.0
 """Left free where two quadrilaterals of a mark would touch [um]."""
 
+SMALL = 6.0
+"""Side of one dot of small print [um]."""
+
 EXACT = 1e-4
 """A mark's grating may leave it by so much, so that rounding never costs a line or a step of length [um]."""
 

@@ -13,6 +13,7 @@ LAYERS = {
     "CHANNELS": "CHAN",
     "MARKS": "MARK",
     "LABELS": "LABL",
+    "TEST": "TEST",
     "PLATE": "PLAT",
     "DOMAINS": "DOMN",
     "SPACER": "SPCR",

@@ -16,6 +16,11 @@ JOB = Job()
 FRAME, CHANNELS, MASKS = both_masks(DOMAINS, JOB)
 
 
+def many_corners(_):
+    angle = 2 * np.pi * np.arange(5000) / 5000
+    return np.rint(2e7 * np.stack([np.cos(angle), np.sin(angle)], axis=1)).astype(np.int32)[None]
+
+
 def found(mask, domains=DOMAINS):
     return {f.check: f for f in check(mask, ChannelField(domains, mask.plate, JOB.channels), FRAME, JOB)}
 
@@ -114,6 +119,7 @@ FAULTS = {
     "channel_area": ("CHANNELS", half_of_them),
     "polygon_convex": ("CHANNELS", bow_tie),
     "polygon_edge": ("LABELS", merge_corners),
+    "polygon_corners": ("PLATE", many_corners),
     "domain_border": ("DOMAINS", shift_first((2, 0))),
     "marks_sheet": ("MARKS", onto_the_sheet),
     "marks_fill": ("MARKS", into_the_fill),

@@ -6,10 +6,9 @@ import ezdxf
 import klayout.db as kdb
 import numpy as np
 import pytest
-from sheets import both_masks, design
+from sheets import PLAIN, both_masks, design
 
 from lce_workbench.core.domains import partition
-from lce_workbench.core.job import Job, Marks
 from lce_workbench.core.mask import LAYERS
 from lce_workbench.export import dxf, gdsii
 
@@ -25,7 +24,7 @@ def ordered(polygons):
 @pytest.fixture(scope="module")
 def files(tmp_path_factory):
     folder = tmp_path_factory.mktemp("dxf")
-    _, _, masks = both_masks(partition(design(2, 3, width=0.5, height=0.6)), Job(marks=Marks(grating=False)))
+    _, _, masks = both_masks(partition(design(2, 3, width=0.5, height=0.6)), PLAIN, room=4.0)
     for plate in PLATES:
         dxf.write(masks[plate], folder / f"{plate}.dxf")
         gdsii.write(masks[plate], folder / f"{plate}.gds")

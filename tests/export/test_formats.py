@@ -7,10 +7,9 @@ import gdstk
 import klayout.db as kdb
 import numpy as np
 import pytest
-from sheets import both_masks, design
+from sheets import PLAIN, both_masks, design
 
 from lce_workbench.core.domains import partition
-from lce_workbench.core.job import Job, Marks
 from lce_workbench.core.mask import LAYERS, Mask
 from lce_workbench.export import EXPORTERS, cif, dxf, oasis
 from lce_workbench.export.digits import hexadecimals, integers, thousandths
@@ -47,7 +46,7 @@ def files(tmp_path_factory):
     """A sheet with channels at all distances from the origin that occur, in every format."""
     folder = tmp_path_factory.mktemp("formats")
     domains = partition(design(2, 3, width=0.5, height=0.6))
-    _, _, masks = both_masks(domains, Job(marks=Marks(grating=False)))
+    _, _, masks = both_masks(domains, PLAIN, room=4.0)
     for plate, mask in masks.items():
         for name, write in EXPORTERS.items():
             write(mask, folder / f"{plate}.{name}")
