@@ -17,7 +17,7 @@ from lce_solver.errors import InputError, LceError
 from lce_solver.surface import load
 from lce_solver.types import Progress, silent
 from lce_workbench import ROOT, __version__, pipeline
-from lce_workbench.core import jobfile
+from lce_workbench.core import align, jobfile
 from lce_workbench.core.job import Job, Target
 from lce_workbench.outputs import read_manifest, told
 
@@ -106,6 +106,8 @@ def _parser() -> Parser:
     ):
         sub = command(name, _stage, doc)
         sub.add_argument("folder", type=Path, metavar="DIR")
+    readings = command("align", _align, "From mark readings to shift, rotation, scale and the worst mismatch.")
+    readings.add_argument("readings", type=Path, metavar="READINGS.csv")
     new = command("new", _new, "Writes a commented job file for a mesh.")
     new.add_argument("target", type=Path, metavar="TARGET")
     new.add_argument("--out", type=Path, metavar="JOB.toml", help="default: TARGET with the ending .toml")
@@ -150,6 +152,18 @@ def _tell(args: argparse.Namespace, out: Path, names: list[str], code: int) -> N
             print(f"{record['severity']}: {record['message']}", file=sys.stderr)
     if not quiet:
         print(f"{', '.join(names)} written to {out}", file=sys.stderr)
+
+
+def _align(args: argparse.Namespace) -> int:
+    found = align.fit(align.read(args.readings))
+    numbers = align.told(found)
+    if getattr(args, "json", False):
+        print(json.dumps(numbers))
+    else:
+        for name in (name for name in numbers if f"{name}_95" in numbers):
+            print(f"{name:20} {numbers[name]:10.4f} +- {numbers[f'{name}_95']:.4f} (95 %)")
+        print("pass" if found.passed else "fail" + (": the readings contradict each other" if found.unlikely else ""))
+    return 0 if found.passed else 1
 
 
 def _new(args: argparse.Namespace) -> int:

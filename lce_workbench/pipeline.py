@@ -21,13 +21,15 @@ from lce_solver.errors import EnvironmentFault, InputError, LceError, SolverErro
 from lce_solver.shell import film_of, predict, settle
 from lce_solver.types import Design, Finding, Progress, Severity, Status, silent
 from lce_workbench import ROOT, __version__
-from lce_workbench.core import jobfile, material, target
+from lce_workbench.core import align, jobfile, material, target
 from lce_workbench.core.cell import Cell, assemble
-from lce_workbench.core.channels import empty_domains, hatch
+from lce_workbench.core.channels import ChannelField, empty_domains, hatch
 from lce_workbench.core.domains import PLATES, partition
+from lce_workbench.core.fields import left_out
 from lce_workbench.core.frame import arrange
 from lce_workbench.core.job import Job
-from lce_workbench.core.marks import marks
+from lce_workbench.core.job_sheet import job_sheet, totals
+from lce_workbench.core.marks import fingerprint, marks
 from lce_workbench.core.mask import compose
 from lce_workbench.core.mask_checks import check
 from lce_workbench.export import EXPORTERS
@@ -125,7 +127,7 @@ def run_design(run: Run) -> Findings:
     (run.folder / "job.toml").write_text(jobfile.dump(rebased(job, run.base, run.folder)), encoding="utf-8")
     write_design(result, run.folder / "design.npz")
     domains = partition(result)
-    counts = [hatch(domains, plate, job.channels).counts for plate in PLATES]
+    counts = [ChannelField(domains, plate, job.channels).counts for plate in PLATES]
     write_table(domains, counts, run.folder / "domains.csv")
     return (*said, *told, *result.findings, *target.sized(result, job), *sheet_findings(job))
 
@@ -180,15 +182,21 @@ def run_mask(run: Run) -> Findings:
     """Draw both plates: `mask/bottom.*`, `mask/top.*`."""
     plan = fabricable(read_design(run.folder / "design.npz"))
     domains, frame = partition(plan), arrange(plan.uv, run.job)
-    (run.folder / "mask").mkdir()
-    found: list[Finding] = []
+    folder = run.folder / "mask"
+    folder.mkdir()
+    code = fingerprint(domains, run.job.channels)
+    (folder / "readings.csv").write_text(align.form(frame, run.job, code), encoding="ascii")
+    found: list[Finding] = [*left_out(frame, run.job)]
+    counted = {}
     for k, plate in enumerate(PLATES):
-        channels = hatch(domains, plate, run.job.channels)
-        mask = compose(frame, domains, channels, run.job)
-        found += (*empty_domains(channels), *check(mask, domains, channels, frame, run.job))
+        field = ChannelField(domains, plate, run.job.channels)
+        mask = compose(frame, field, run.job)
+        found += (*empty_domains(field), *check(mask, field, frame, run.job))
+        counted[plate] = totals(mask)
         for j, name in enumerate(run.job.output.masks):
             run.progress(f"mask {plate}.{name}", (k + j / len(run.job.output.masks)) / len(PLATES))
-            EXPORTERS[name](mask, run.folder / "mask" / f"{plate}.{name}")
+            EXPORTERS[name](mask, folder / f"{plate}.{name}")
+    (folder / "job_sheet.txt").write_text(job_sheet(frame, run.job, counted, code), encoding="ascii")
     run.progress("mask", 1.0)
     return tuple(found)
 

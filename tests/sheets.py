@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from lce_solver.types import Design, Flattening, Material, Status, Surface
-from lce_workbench.core.channels import hatch
+from lce_workbench.core.channels import ChannelField, hatch
 from lce_workbench.core.domains import Domains, partition
 from lce_workbench.core.frame import arrange
-from lce_workbench.core.job import ChannelSpec, Job
+from lce_workbench.core.job import ChannelSpec, Job, Marks
 from lce_workbench.core.mask import compose
 
 
@@ -54,17 +54,26 @@ def b20():
     return partition(design(columns=55, rows=69, width=20.0, height=20.0))
 
 
+def wafer():
+    """A wafer's sheet: 100 x 100 mm, 190 000 domains, 31 million channels a plate."""
+    return partition(design(columns=275, rows=345, width=100.0, height=100.0))
+
+
 def single(triangle, theta, dtheta=0.0):
     """One domain."""
     return Domains(np.asarray(triangle, float), [[0, 1, 2]], [theta], [dtheta], [[0.6, 1.29]])
 
 
-def both_masks(domains, job=None):
-    """Frame, channels and masks of both plates."""
+PLAIN = Job(marks=Marks(grating=False, fields=("depth",)))
+"""A job with few polygons outside the sheet, on every layer."""
+
+
+def both_masks(domains, job=None, room=0.0):
+    """Frame, channels and masks of both plates; the frame is laid out for a sheet of ``room`` mm at least."""
     job = job or Job()
-    frame = arrange(domains.vertices, job)
+    frame = arrange(np.concatenate([domains.vertices, np.array([[-room, -room], [room, room]]) / 2]), job)
     channels = {plate: hatch(domains, plate, job.channels) for plate in ("bottom", "top")}
-    masks = {plate: compose(frame, domains, channels[plate], job) for plate in channels}
+    masks = {plate: compose(frame, ChannelField(domains, plate, job.channels), job) for plate in channels}
     return frame, channels, masks
 
 

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,34 +75,79 @@ class Channels:
         return np.asarray(np.bincount(self.domain, self.length * self.width, len(self.angle)), dtype=np.float64)
 
 
+@dataclass(frozen=True, eq=False)
+class ChannelField:
+    """The channels of one plate, made block by block whenever they are asked for.
+
+    So memory does not grow with the plate, and every pass yields the same channels to the bit.
+    """
+
+    domains: Domains
+    plate: Plate
+    spec: ChannelSpec
+
+    def __iter__(self) -> Iterator[Channels]:
+        """Yield the channels of `BLOCK` domains at a time, all of each; domains are numbered through."""
+        outlines, angle = self.domains.corners, self.domains.angle(self.plate)
+        for first in range(0, len(self.domains), BLOCK):
+            rows = slice(first, first + BLOCK)
+            centre, length, domain = fill(outlines[rows], angle[rows], self.spec)
+            yield Channels(self.plate, centre, angle, length, domain + first, self.spec.width, self.spec.depth)
+
+    @cached_property
+    def counts(self) -> Ints:
+        """(n_d,) channels in each domain.
+
+        Raises
+        ------
+        InputError
+            No domain is large enough for a single channel.
+        """
+        counts = np.zeros(len(self.domains), dtype=np.int64)
+        for part in self:
+            owners, found = np.unique(part.domain, return_counts=True)
+            counts[owners] = found
+        _refuse_none(int(counts.sum()), self.spec)
+        return counts
+
+
 def hatch(domains: Domains, plate: Plate, spec: ChannelSpec) -> Channels:
     """Fill every domain with channels along its director on ``plate`` (paper, methods: 1 um wide, 2 um pitch).
+
+    All channels at once; `ChannelField` is the way to treat a large plate.
 
     Raises
     ------
     InputError
         No domain is large enough for a single channel.
     """
-    triangles, angle = domains.corners, domains.angle(plate)
-    starts = range(0, len(domains), BLOCK)
-    parts = [_fill(triangles[i : i + BLOCK], angle[i : i + BLOCK], spec) for i in starts]
-    centre = np.concatenate([p[0] for p in parts])
-    if not len(centre):
+    parts = list(ChannelField(domains, plate, spec))
+    centre, length, domain = (
+        np.concatenate([getattr(part, name) for part in parts]) for name in ("centre", "length", "domain")
+    )
+    _refuse_none(len(length), spec)
+    return Channels(plate, centre, domains.angle(plate), length, domain, spec.width, spec.depth)
+
+
+def _refuse_none(count: int, spec: ChannelSpec) -> None:
+    if not count:
         msg = (
             f"channels.width_um = {spec.width_um:g} with guard_um = {spec.guard_um:g} fits into none of the domains; "
             "make the channels narrower or domains.size_um larger"
         )
         raise InputError(msg)
-    length = np.concatenate([p[1] for p in parts])
-    domain = np.concatenate([p[2] + i for p, i in zip(parts, starts, strict=True)])
-    return Channels(plate, centre, angle, length, domain, spec.width, spec.depth)
 
 
 def corners(channels: Channels, rows: slice = slice(None)) -> Floats:
     """Corners (n, 4, 2) of the channels in ``rows``, counter-clockwise [mm]; the first edge runs along the channel."""
-    centre, angle = channels.centre[rows], channels.angle[channels.domain[rows]]
+    angle = channels.angle[channels.domain[rows]]
+    return rectangles(channels.centre[rows], channels.length[rows], angle, channels.width)
+
+
+def rectangles(centre: Floats, length: Floats, angle: Floats, width: float) -> Floats:
+    """Corners (n, 4, 2) of rectangles with middles (n, 2), counter-clockwise; the first edge runs along ``angle``."""
     c, s = np.cos(angle), np.sin(angle)
-    half, side = channels.length[rows] / 2, channels.width / 2
+    half, side = length / 2, width / 2
     polygons = np.empty((len(centre), 4, 2))
     for i, (along, across) in enumerate(((-1, -1), (1, -1), (1, 1), (-1, 1))):  # by component: twice as fast
         polygons[:, i, 0] = centre[:, 0] + along * half * c - across * side * s
@@ -109,22 +155,9 @@ def corners(channels: Channels, rows: slice = slice(None)) -> Floats:
     return polygons
 
 
-def blocks(channels: Channels, size: int = 8192) -> Iterator[slice]:
-    """Rows of the channels in runs of about ``size`` that never split a domain."""
-    start, n = 0, len(channels)
-    while start < n:
-        stop = n
-        if start + size < n:
-            stop = int(np.searchsorted(channels.domain, channels.domain[start + size]))
-            if stop <= start:  # one domain larger than a block
-                stop = int(np.searchsorted(channels.domain, channels.domain[start], side="right"))
-        yield slice(start, stop)
-        start = stop
-
-
-def empty_domains(channels: Channels) -> tuple[Finding, ...]:
+def empty_domains(field: ChannelField) -> tuple[Finding, ...]:
     """Report the domains too small for one channel (or folded); they stay empty."""
-    empty = np.flatnonzero(channels.counts == 0)
+    empty = np.flatnonzero(field.counts == 0)
     if not len(empty):
         return ()
     shown = ", ".join(map(str, empty[:20])) + (" and more" if len(empty) > 20 else "")
@@ -132,8 +165,8 @@ def empty_domains(channels: Channels) -> tuple[Finding, ...]:
         Finding(
             "empty_domains",
             Severity.WARNING,
-            f"{len(empty)} domains of the {channels.plate} plate are too small for one channel and stay empty; "
-            f"their rows of domains.csv have channels_{channels.plate} = 0",
+            f"{len(empty)} domains of the {field.plate} plate are too small for one channel and stay empty; "
+            f"their rows of domains.csv have channels_{field.plate} = 0",
             value=float(len(empty)),
             limit=0.0,
             where=f"domain {shown}",
@@ -141,13 +174,13 @@ def empty_domains(channels: Channels) -> tuple[Finding, ...]:
     )
 
 
-def _fill(triangles: Floats, angle: Floats, spec: ChannelSpec) -> tuple[Floats, Floats, Ints]:
-    """Centres, lengths and domains of the channels of a block of domains (m, 3, 2).
+def fill(outlines: Floats, angle: Floats, spec: ChannelSpec) -> tuple[Floats, Floats, Ints]:
+    """Centres (n, 2), lengths (n,) and domains (n,) of the channels along ``angle`` (m,) in convex outlines (m, k, 2).
 
     Every domain gets as many strips as the tallest needs; those outside their domain go.
     """
-    origin = triangles.mean(axis=1)  # local coordinates, so that no digits are lost at the sheet's rim
-    local = _turn(triangles - origin[:, None], -angle[:, None])
+    origin = outlines.mean(axis=1)  # local coordinates, so that no digits are lost at the sheet's rim
+    local = _turn(outlines - origin[:, None], -angle[:, None])
     y, inside = _strips(local, spec)
     left, right = _ends(local, y, spec)
     steps = np.floor((right - left) * STEPS_PER_MM)
@@ -165,7 +198,7 @@ def _turn(points: Floats, angle: Floats) -> Floats:
 
 
 def _strips(local: Floats, spec: ChannelSpec) -> tuple[Floats, Bools]:
-    """Mid-lines y (m, k) of strips, centred in each inset triangle of (m, 3, 2), and which of them it holds (m, k)."""
+    """Mid-lines y (m, k) of strips, centred in each inset outline of (m, c, 2), and which of them it holds (m, k)."""
     low, high = _inset_extent(local, spec.guard)
     count = np.floor((high - low - spec.width) / spec.pitch) + 1
     k = np.arange(max(count.max(), 0))
@@ -174,24 +207,32 @@ def _strips(local: Floats, spec: ChannelSpec) -> tuple[Floats, Bools]:
 
 
 def _inset_extent(local: Floats, guard: float) -> tuple[Floats, Floats]:
-    """Smallest and largest y of each triangle after its edges moved inwards; (0, -1) where nothing is left.
+    """Smallest and largest y of each outline (m, k, 2) after its edges moved inwards; (0, -1) where it is folded.
 
-    Moving the edges by g scales a triangle about its incentre by 1 - g/r, r = 2 area / perimeter the inradius.
+    Each corner moves along its bisector: a - g (n + n') / (1 + n n'), n and n' the normals of its two edges. Where
+    edges vanish on the way this reaches too far, and the strips there turn out to have no length.
     """
-    opposite = np.linalg.norm(np.roll(local, -1, axis=1) - np.roll(local, -2, axis=1), axis=2)
-    perimeter = opposite.sum(axis=1)
-    centre = np.sum(opposite * local[..., 1], axis=1) / perimeter
-    inradius = 2 * signed_area(local) / perimeter
-    left = inradius > guard
-    scale = 1 - guard / np.where(left, inradius, np.inf)
-    y = centre[:, None] + scale[:, None] * (local[..., 1] - centre[:, None])
-    return np.where(left, y.min(axis=1), 0.0), np.where(left, y.max(axis=1), -1.0)
+    normal = _normals(local)
+    before = np.roll(normal, 1, axis=1)
+    share = np.maximum(1 + np.sum(normal * before, axis=2), PARALLEL)
+    y = local[..., 1]
+    moved = y - guard * (normal + before)[..., 1] / share
+    low = np.maximum(moved.min(axis=1), y.min(axis=1) - abs(guard))
+    high = np.minimum(moved.max(axis=1), y.max(axis=1) + abs(guard))
+    folded = signed_area(local) <= 0
+    return np.where(folded, 0.0, low), np.where(folded, -1.0, high)
+
+
+def _normals(outlines: Floats) -> Floats:
+    """Outward unit normals (m, k, 2) of the edges of counter-clockwise outlines; 0 for an edge without length."""
+    edge = np.roll(outlines, -1, axis=1) - outlines
+    size = np.linalg.norm(edge, axis=2)[..., None]
+    return np.stack([edge[..., 1], -edge[..., 0]], axis=2) / np.where(size > 0, size, 1.0)
 
 
 def _ends(local: Floats, y: Floats, spec: ChannelSpec) -> tuple[Floats, Floats]:
     """Both ends x (m, k) of the longest rectangle about each mid-line y (m, k); see the head of this file."""
-    edge = np.roll(local, -1, axis=1) - local
-    normal = np.stack([edge[..., 1], -edge[..., 0]], axis=2) / np.linalg.norm(edge, axis=2)[..., None]
+    normal = _normals(local)
     room = np.sum(normal * local, axis=2) - spec.guard - np.abs(normal[..., 1]) * spec.width / 2
     n_x = normal[..., 0]
     safe = np.where(np.abs(n_x) > PARALLEL, n_x, 1.0)

@@ -3,12 +3,17 @@
 ::
 
     +---------------------- plate ----------------------+   ^ y
-    | glue |strip| M                         M |strip|  |   |
-    | glue |strip|    +------- sheet ------+   |strip|  |   +--> x
-    | glue |strip|    |                    |   |strip|  |
-    | glue |strip|    +--------------------+   |strip|  |   The lower and upper edges between the strips
-    | glue |strip| M                         M |strip|  |   stay open: filling and venting.
+    |  M  |strip|           M             |strip|  M    |   |
+    |     |strip|  ..................     |strip|       |   |
+    |     |strip|  .+----- sheet ---+.    |strip|       |   +--> x
+    |  M  |strip|  .|               |.    |strip|  M    |
+    |     |strip|  .+---------------+.    |strip|       |   The lower and upper edges between the strips
+    |     |strip|  .......fill.......     |strip|       |   stay open: filling (below) and venting (above).
+    |  M  |strip|           M             |strip|  M    |
     +---------------------------------------------------+
+
+The marks at the sides lie behind the strips, where the glass stays dry: in air they scatter, filled they vanish. The
+material flows in over the mark below the sheet, so that one is read before filling.
 """
 
 from __future__ import annotations
@@ -23,6 +28,15 @@ from lce_workbench.core.job import Job
 
 MARK_BOX = 1.5
 """Side of the square that holds one cluster of marks [mm]."""
+
+SPILL = 1.0
+"""The material fills so much more than the sheet, below and above [mm]."""
+
+EDGE = 1.0
+"""From the marks to the glass edge, below and above [mm]."""
+
+BAND_GAP = 0.25
+"""Between marks and test fields [mm]."""
 
 GLASS = ((25.0, 25.0), (25.0, 75.0), (75.0, 25.0), (50.0, 50.0), (100.0, 100.0), (150.0, 150.0), (200.0, 200.0))
 """Standard carriers, width x height [mm], in the order of preference."""
@@ -59,7 +73,12 @@ class Frame:
     sheet: Rect
     """Bounding box of the flat sheet."""
     marks: Floats
-    """(4, 2) centres of the mark clusters: lower left, lower right, upper right, upper left [mm]."""
+    """(8, 2) centres of the mark clusters: the corners from the lower left, counter-clockwise, then the middles of the
+    lower, right, upper and left side [mm]."""
+    fill: Rect
+    """What the material has to fill: between the strips, a little more than the sheet."""
+    bands: tuple[Rect, Rect, Rect, Rect]
+    """Free places for test fields, beside the middle marks: lower left, lower right, upper left, upper right."""
     strips: tuple[Rect, Rect]
     """Left and right spacer strip."""
     plate: Rect
@@ -80,17 +99,32 @@ def arrange(uv: Floats, job: Job) -> Frame:
     """
     (x0, y0), (x1, y1) = uv.min(axis=0), uv.max(axis=0)
     sheet = Rect(float(x0), float(y0), float(x1), float(y1))
-    reach = job.marks.clearance_mm + MARK_BOX / 2
-    marks = sheet.grown(reach, reach).ring
-    inner = sheet.grown(*[job.marks.clearance_mm + MARK_BOX + job.spacer.clearance_mm] * 2)
+    widened = max(0.0, (MARK_BOX - sheet.size[0]) / 2)  # room for the middle marks between the strips
+    inner = sheet.grown(widened + job.spacer.clearance_mm, 0.0)
     outer = inner.grown(job.spacer.strip_mm, 0.0)
-    needed = outer.grown(job.spacer.glue_mm, 0.0)
-    plate = _glass(needed, job)
+    reach = job.marks.clearance_mm + MARK_BOX / 2
+    ring = outer.grown(job.spacer.clearance_mm + MARK_BOX / 2, 0.0).grown(0.0, reach).ring
+    rim = outer.grown(job.spacer.clearance_mm + MARK_BOX + job.spacer.glue_mm, 0.0)
+    plate = _glass(rim.grown(0.0, job.marks.clearance_mm + MARK_BOX + EDGE), job)
     strips = (
         Rect(outer.x0, plate.y0, inner.x0, plate.y1),
         Rect(inner.x1, plate.y0, outer.x1, plate.y1),
     )
-    return Frame(sheet=sheet, marks=marks, strips=strips, plate=plate)
+    marks = np.concatenate([ring, (ring + np.roll(ring, -1, axis=0)) / 2])
+    fill = inner.grown(0.0, SPILL)
+    return Frame(sheet, marks, fill, _bands(marks, sheet), strips, plate)
+
+
+def _bands(marks: Floats, sheet: Rect) -> tuple[Rect, Rect, Rect, Rect]:
+    """Free places below and above the sheet, on either side of the middle marks."""
+    half = MARK_BOX / 2
+    (x, lower), upper = marks[4], marks[6][1]
+    left, right = (sheet.x0, x - half - BAND_GAP), (x + half + BAND_GAP, sheet.x1)
+
+    def band(sides: tuple[float, float], y: float) -> Rect:
+        return Rect(sides[0], y - half, sides[1], y + half)
+
+    return band(left, lower), band(right, lower), band(left, upper), band(right, upper)
 
 
 def _glass(needed: Rect, job: Job) -> Rect:

@@ -132,18 +132,25 @@ class ChannelSpec:
 class Plates:
     """The two epoxy plates on their glass carriers."""
 
-    width_mm: float | None = param(None, "glass width (x); default: smallest standard glass", unit="mm", above=0.0)
-    height_mm: float | None = param(None, "glass height (y)", unit="mm", above=0.0)
+    width_mm: float | None = param(
+        None, "glass width (x); default: smallest standard glass", unit="mm", above=0.0, high=200.0
+    )
+    height_mm: float | None = param(None, "glass height (y)", unit="mm", above=0.0, high=200.0)
     glass_mm: float = param(1.0, "glass thickness", unit="mm", above=0.0, high=20.0)
     epoxy_um: float = param(50.0, "epoxy layer under the channels", unit="um", above=0.0, high=5000.0)
 
 
 @dataclass(frozen=True)
 class Marks:
-    """Alignment marks at the four corners, outside the sheet."""
+    """Alignment marks at the corners and the middles of the sides, outside the sheet."""
 
     clearance_mm: float = param(2.0, "from the sheet's bounding box to the marks", unit="mm", low=0.1, high=50.0)
     tolerance_um: float = param(10.0, "largest accepted mismatch of the plates", unit="um", above=0.0, high=100.0)
+    grating: bool = param(True, "fill the marks with the channels' grating, so that they are dark in the microscope")
+    fields: tuple[str, ...] = param(
+        ("directors", "dose", "depth", "resolution", "pitch"), "test fields outside the sheet; leave out any"
+    )
+    label: str = param("", "your own words beside the design's code: capital letters, digits, space, + - . /")
 
 
 @dataclass(frozen=True)
@@ -151,7 +158,7 @@ class Spacer:
     """Mylar strips on the two glue edges (left and right); the other two edges stay open for filling."""
 
     strip_mm: float = param(3.0, "width of a strip", unit="mm", above=0.0, high=50.0)
-    clearance_mm: float = param(1.0, "from the marks to the strips", unit="mm", low=0.0, high=50.0)
+    clearance_mm: float = param(1.0, "between strips and sheet, and strips and marks", unit="mm", low=0.0, high=50.0)
     glue_mm: float = param(2.0, "free glass outside each strip for the glue", unit="mm", low=0.0, high=50.0)
 
 
@@ -177,7 +184,10 @@ class PredictionSpec:
 class Output:
     """What is written."""
 
-    masks: tuple[str, ...] = param(("gds", "dxf"), "mask formats: gds, dxf")
+    masks: tuple[str, ...] = param(
+        ("gds", "oas", "dxf"), "mask formats: gds, oas, dxf (R2000, for CAD), r12.dxf (for the writer, um), cif"
+    )
+    writer_um: float = param(0.8, "smallest line and land of the laser writer's mode", unit="um", above=0.0, high=100.0)
     freecad: bool = param(True, "write the FreeCAD document cad/cell.FCStd (needs freecadcmd)")
     step_domains: tuple[int, ...] = param((), "domains whose channels become solids; default: the most central")
 

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lce_solver.errors import InputError
 from lce_solver.types import Floats
-from lce_workbench.core.channels import Channels, blocks, corners
-from lce_workbench.core.domains import Domains, Plate
+from lce_workbench.core.channels import ChannelField, corners
+from lce_workbench.core.domains import Plate
+from lce_workbench.core.fields import fields
 from lce_workbench.core.frame import Frame
 from lce_workbench.core.job import Job
-from lce_workbench.core.marks import marks
+from lce_workbench.core.marks import exposed, fingerprint
 from lce_workbench.core.units import NM
 
 Nanometres = NDArray[np.int32]
@@ -22,13 +24,14 @@ LAYERS: dict[str, int] = {
     "CHANNELS": 1,
     "MARKS": 2,
     "LABELS": 3,
+    "TEST": 4,
     "PLATE": 10,
     "DOMAINS": 11,
     "SPACER": 12,
 }
 """Layer names (DXF) and numbers (GDSII, datatype 0), in the order in which they are written."""
 
-EXPOSED = ("CHANNELS", "MARKS", "LABELS")
+EXPOSED = ("CHANNELS", "MARKS", "LABELS", "TEST")
 """Layers that the laser writes; the others are for orientation."""
 
 NAMES: dict[Plate, str] = {"bottom": "LCE_BOTTOM", "top": "LCE_TOP"}
@@ -39,10 +42,11 @@ class Mask:
     """What is on one master, seen from its resist side; the sheet's centre is the origin."""
 
     plate: Plate
-    layers: Mapping[str, tuple[Nanometres, ...]]
-    """Polygons (n, k, 2) of each layer of `LAYERS`, one array per vertex count k; convex, counter-clockwise [nm].
+    layers: Mapping[str, Iterable[Nanometres]]
+    """Polygons of each layer of `LAYERS`, as arrays (n, k, 2); convex, counter-clockwise [nm].
 
-    ``CHANNELS`` is one array (n, 4, 2) in the order of `Channels`; the first edge runs along the channel.
+    ``CHANNELS`` comes in the blocks of a `ChannelField`, each an array (n, 4, 2) that exists only while it is used;
+    the first edge runs along the channel. Every layer can be gone through many times.
     """
 
     @property
@@ -52,8 +56,8 @@ class Mask:
 
     @property
     def channels(self) -> Nanometres:
-        """(n, 4, 2) channels as written [nm]."""
-        return self.layers["CHANNELS"][0]
+        """(n, 4, 2) all channels as written, in memory at once [nm]."""
+        return np.concatenate([*self.layers["CHANNELS"]])
 
 
 def nanometres(polygons: Floats) -> Nanometres:
@@ -73,26 +77,52 @@ def written(polygons: Floats, plate: Plate) -> Nanometres:
     return flipped(nanometres(polygons)) if plate == "top" else nanometres(polygons)
 
 
-def compose(frame: Frame, domains: Domains, channels: Channels, job: Job) -> Mask:
-    """Everything on the master of the channels' plate.
+@dataclass(frozen=True, eq=False)
+class WrittenChannels:
+    """Channels as written, block by block (n, 4, 2) [nm]."""
+
+    field: ChannelField
+
+    def __iter__(self) -> Iterator[Nanometres]:
+        """Yield the integers of each block of the field."""
+        return (written(corners(part), part.plate) for part in self.field)
+
+
+def compose(frame: Frame, field: ChannelField, job: Job) -> Mask:
+    """Everything on the master of the field's plate.
 
     The top plate is mirrored, because its patterned face looks down in the cell. Resist -> PDMS -> epoxy mirrors
     twice, so a master has the handedness of its epoxy plate.
+
+    Raises
+    ------
+    InputError
+        Lines or lands are finer than the writer's mode, or a label or test field is not known.
     """
-    plate = channels.plate
+    _refuse_too_fine(job)
+    plate = field.plate
     shapes = {
-        **marks(frame, plate, job.marks),
+        **exposed(frame, plate, job, fingerprint(field.domains, field.spec)),
+        "TEST": fields(frame, job),
         "PLATE": frame.plate.ring[None],
-        "DOMAINS": domains.corners,
+        "DOMAINS": field.domains.corners,
         "SPACER": np.stack([strip.ring for strip in frame.strips]),
     }
-    layers = {"CHANNELS": _channels(channels)} | {name: written(shape, plate) for name, shape in shapes.items()}
-    return Mask(plate, {name: (layers[name],) for name in LAYERS})
+    layers: dict[str, Iterable[Nanometres]] = {name: (written(shape, plate),) for name, shape in shapes.items()}
+    layers["CHANNELS"] = WrittenChannels(field)
+    return Mask(plate, {name: layers[name] for name in LAYERS})
 
 
-def _channels(channels: Channels) -> Nanometres:
-    """Channels (n, 4, 2) as written [nm]; in blocks, so that only integers exist for all of them at once."""
-    polygons = np.empty((len(channels), 4, 2), dtype=np.int32)
-    for rows in blocks(channels):
-        polygons[rows] = written(corners(channels, rows), channels.plate)
-    return polygons
+def _refuse_too_fine(job: Job) -> None:
+    finest = job.output.writer_um
+    for key, found, fault in (
+        ("width_um", job.channels.width_um, "cannot be written"),
+        ("spacing_um", job.channels.spacing_um, "would merge its neighbours"),
+        ("guard_um", 2 * job.channels.guard_um, "doubled, would merge channels across the domains' borders"),
+    ):
+        if found < finest:
+            msg = (
+                f"channels.{key} = {getattr(job.channels, key):g} {fault} by a writer whose finest line and land is "
+                f"output.writer_um = {finest:g} um; make it larger or choose a finer mode"
+            )
+            raise InputError(msg)

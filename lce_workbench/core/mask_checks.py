@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lce_solver.types import Finding, Floats, Ints, Severity
-from lce_workbench.core.channels import MIN_LENGTH, Channels, blocks
+from lce_workbench.core.channels import MIN_LENGTH, ChannelField
 from lce_workbench.core.domains import Domains
-from lce_workbench.core.frame import Frame
+from lce_workbench.core.frame import SPILL, Frame
+from lce_workbench.core.gaps import smallest_gap
 from lce_workbench.core.job import ChannelSpec, Job
 from lce_workbench.core.mask import EXPOSED, Mask, Nanometres, flipped, written
 from lce_workbench.core.units import NM
@@ -28,6 +29,9 @@ MAX_ANGLE = 1e-3
 
 FULL_WEIGHT = 1e6
 """A domain with less channel than this counts in proportion: 1 nm turns a single short channel visibly [nm]."""
+
+MAX_CORNERS = 4000
+"""Corners of a polygon that every reader of GDSII takes."""
 
 MAX_REACH = 1e8
 """Half the side of the largest plate the writer takes, 200 mm [nm]."""
@@ -139,69 +143,79 @@ CHANNEL_CHECKS: dict[str, Check] = {
 """Measured on every channel. Lands between channels of different domains are at least two insets wide."""
 
 
-def check(mask: Mask, domains: Domains, channels: Channels, frame: Frame, job: Job) -> tuple[Finding, ...]:
+def check(mask: Mask, field: ChannelField, frame: Frame, job: Job) -> tuple[Finding, ...]:
     """Measure a mask; a finding is an error where it leaves its limit.
 
     Parameters
     ----------
-    channels : what ``CHANNELS`` was made of; only the domain of each channel is used.
+    field : what ``CHANNELS`` was made of; only the domain of each channel is used.
     """
     return (
-        *_channel_findings(mask, domains, channels, job.channels),
-        _area(mask, domains, job.channels),
+        *_channel_findings(mask, field),
         *_polygon_findings(mask),
-        _border(mask, domains),
+        _border(mask, field.domains),
         *_mark_findings(mask, frame, job),
         *_extent_findings(mask),
     )
 
 
-def _channel_findings(mask: Mask, domains: Domains, channels: Channels, spec: ChannelSpec) -> Iterator[Finding]:
-    """The worst value of every channel check."""
+def _channel_findings(mask: Mask, field: ChannelField) -> Iterator[Finding]:
+    """The worst value of every channel check, and the area of all channels."""
     worst: dict[str, tuple[float, int]] = {}
-    borders, direction = _points(domains.corners / NM).T, domains.written(mask.plate)
-    for rows in blocks(channels):
-        corners = np.ascontiguousarray(_points(mask.channels[rows]).T)
+    exposed = 0.0
+    borders, direction = _points(field.domains.corners / NM).T, field.domains.written(mask.plate)
+    for part, polygons in zip(field, mask.layers["CHANNELS"], strict=True):
+        if not len(part):
+            continue
+        corners = np.ascontiguousarray(_points(polygons).T)
         seen = -np.conj(corners[::-1]) if mask.plate == "top" else corners
-        block = Block(corners, seen, channels.domain[rows], borders, direction, spec)
+        block = Block(corners, seen, part.domain, borders, direction, field.spec)
         for name, item in CHANNEL_CHECKS.items():
             values, domain = item.measure(block)
             if len(values):
                 i = int(np.argmin(values) if item.at_least else np.argmax(values))
                 found = float(values[i]), int(domain[i])
                 worst[name] = (min if item.at_least else max)(worst.get(name, found), found)
+        exposed += float(_cross(corners[2] - corners[0], corners[3] - corners[1]).sum()) / 2
     for name, (value, place) in worst.items():
         item = CHANNEL_CHECKS[name]
-        measured = Measurement(value, item.limit(spec), item.at_least, item.unit, f"domain {place}")
+        measured = Measurement(value, item.limit(field.spec), item.at_least, item.unit, f"domain {place}")
         yield _judged(mask, name, item.quantity, measured)
+    yield _area(mask, field, exposed)
 
 
-def _area(mask: Mask, domains: Domains, spec: ChannelSpec) -> Finding:
-    """Channel area, from the integers, as a fraction of sheet area x duty."""
-    corners = (_points(part) for part in _parts(mask.channels))
-    exposed = sum(float(_cross(p[:, 2] - p[:, 0], p[:, 3] - p[:, 1]).sum()) / 2 for p in corners)
-    ratio = exposed * NM**2 / (float(np.abs(domains.area).sum()) * spec.duty)
+def _area(mask: Mask, field: ChannelField, exposed: float) -> Finding:
+    """Channel area [nm2], from the integers, as a fraction of sheet area x duty."""
+    ratio = exposed * NM**2 / (float(np.abs(field.domains.area).sum()) * field.spec.duty)
     text = "channel area / (sheet area x duty)"
     return _judged(mask, "channel_area", text, Measurement(ratio, 1 - AREA_LOSS, True), Severity.WARNING)
 
 
 def _polygon_findings(mask: Mask) -> Iterator[Finding]:
-    """Convexity and edge length of every polygon of every layer."""
-    turn, edge = (np.inf, ""), (np.inf, "")
+    """Convexity, edge length and number of corners of every polygon of every layer."""
+    turn, edge, most = (np.inf, ""), (np.inf, ""), (0, "")
     for name, groups in mask.layers.items():
         for part in (part for group in groups for part in _parts(group)):
             corners = np.ascontiguousarray(_points(part).T)
             side = np.roll(corners, -1, axis=0) - corners
             turn = min(turn, (float(_cross(side, np.roll(side, -1, axis=0)).min()), name))
             edge = min(edge, (float(np.abs(side).min()), name))
-    text = "smallest turn at a corner (positive: convex, counter-clockwise)"
-    yield _judged(mask, "polygon_convex", text, Measurement(turn[0], 1.0, True, "nm2", turn[1]))
-    yield _judged(mask, "polygon_edge", "shortest edge of a polygon", Measurement(edge[0], 1.0, True, "nm", edge[1]))
+            most = max(most, (len(corners), name))
+    for check, text, found in (
+        (
+            "polygon_convex",
+            "smallest turn at a corner (positive: convex, counter-clockwise)",
+            Measurement(turn[0], 1.0, True, "nm2", turn[1]),
+        ),
+        ("polygon_edge", "shortest edge of a polygon", Measurement(edge[0], 1.0, True, "nm", edge[1])),
+        ("polygon_corners", "most corners of a polygon", Measurement(most[0], MAX_CORNERS, False, "", most[1])),
+    ):
+        yield _judged(mask, check, text, found)
 
 
 def _border(mask: Mask, domains: Domains) -> Finding:
     """Domain borders, mirrored back on the top plate, against the design."""
-    (group,) = mask.layers["DOMAINS"]
+    group = np.concatenate([*mask.layers["DOMAINS"]])
     seen = flipped(group) if mask.plate == "top" else group
     error = np.abs(seen - domains.corners / NM).max(axis=(1, 2))
     worst = int(error.argmax())
@@ -210,26 +224,46 @@ def _border(mask: Mask, domains: Domains) -> Finding:
 
 
 def _mark_findings(mask: Mask, frame: Frame, job: Job) -> Iterator[Finding]:
-    """Marks and labels stay clear of the sheet, of the spacer and of each other."""
-    marks = np.concatenate([_boxes(group) for name in ("MARKS", "LABELS") for group in mask.layers[name]])
-    sheet = _boxes(written(frame.sheet.ring[None], mask.plate))
+    """Marks, labels and test fields stay clear of the sheet, of what is filled, of the spacer and of each other."""
+    groups = {name: np.concatenate([*mask.layers[name]]) for name in ("MARKS", "LABELS", "TEST")}
+    boxes = {name: _boxes(group) for name, group in groups.items()}
+    marks, dry = np.concatenate([*boxes.values()]), np.concatenate([boxes["MARKS"], boxes["LABELS"]])
+    sheet, fill = (_boxes(written(region.ring[None], mask.plate)) for region in (frame.sheet, frame.fill))
     spacer = np.concatenate([_boxes(group) for group in mask.layers["SPACER"]])
-    each_other = _gaps(marks, marks)
-    np.fill_diagonal(each_other, np.inf)
-    for name, text, gaps, least in (
-        ("marks_sheet", "clearance from the sheet to the marks", _gaps(marks, sheet), job.marks.clearance_mm / NM),
-        ("marks_spacer", "clearance from the marks to the spacer", _gaps(marks, spacer), job.spacer.clearance_mm / NM),
-        ("marks_disjoint", "smallest gap between two polygons of marks and labels", each_other, ROUNDING),
+    clear, beside = job.marks.clearance_mm, job.spacer.clearance_mm
+    unfilled = max(clear - SPILL, 0.0)
+    for name, text, gap, least in (
+        ("marks_sheet", "clearance from the sheet to the marks", _gaps(marks, sheet).min(), clear / NM),
+        (
+            "marks_fill",
+            "clearance from the filled area to the marks",
+            _gaps(dry, fill).min(),
+            unfilled / NM,
+        ),
+        (
+            "marks_spacer",
+            "clearance from the marks to the spacer",
+            _gaps(marks, spacer).min(),
+            beside / NM,
+        ),
+        (
+            "marks_disjoint",
+            "smallest gap between two polygons of marks, labels, test fields",
+            smallest_gap(np.concatenate([*groups.values()]).astype(np.float64)),
+            ROUNDING,
+        ),
     ):
-        yield _judged(mask, name, text, Measurement(float(gaps.min()), least - ROUNDING, True, "nm"))
+        yield _judged(mask, name, text, Measurement(float(gap), least - ROUNDING, True, "nm"))
 
 
 def _extent_findings(mask: Mask) -> Iterator[Finding]:
     """Everything lies on the writer's largest plate, and what is exposed lies on this one."""
-    bounds = {name: np.array([_bounds(group) for group in groups]) for name, groups in mask.layers.items()}
-    reach = max(float(np.abs(found).max()) for found in bounds.values())
+    bounds = {
+        name: np.array([_bounds(group) for group in groups if len(group)]) for name, groups in mask.layers.items()
+    }
+    reach = max(float(np.abs(found).max(initial=0)) for found in bounds.values())
     yield _judged(mask, "extent", "largest coordinate", Measurement(reach, MAX_REACH, False, "nm"))
-    plate, exposed = bounds["PLATE"][0], np.concatenate([bounds[name] for name in EXPOSED])
+    plate, exposed = bounds["PLATE"][0], np.concatenate([bounds[name].reshape(-1, 4) for name in EXPOSED])
     inside = min((exposed - plate)[:, :2].min(), (plate - exposed)[:, 2:].min())
     text = "smallest distance from what is exposed to the plate's edge"
     yield _judged(mask, "plate_margin", text, Measurement(float(inside), 0.0, True, "nm"))

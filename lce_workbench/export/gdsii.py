@@ -12,9 +12,6 @@ import numpy as np
 
 from lce_workbench.core.mask import LAYERS, Mask, Nanometres
 
-BLOCK = 8192
-"""Polygons formatted at once: half a megabyte stays in the cache."""
-
 STAMP = (2000, 1, 1, 0, 0, 0) * 2
 """Modification and access time."""
 
@@ -35,9 +32,7 @@ def write(mask: Mask, path: Path) -> None:
     with path.open("wb") as file:
         file.write(_opening(mask.name))
         for name, groups in mask.layers.items():
-            for polygons in groups:
-                for start in range(0, len(polygons), BLOCK):
-                    file.write(_boundaries(polygons[start : start + BLOCK], LAYERS[name]).tobytes())
+            file.writelines(_boundaries(polygons, LAYERS[name]).tobytes() for polygons in groups)
         file.write(_record(ENDSTR) + _record(ENDLIB))
 
 

@@ -47,6 +47,6 @@ def cell(chosen: tuple[int, ...] = (24, 25), gap_um: float = 100.0) -> Cell:
     """The sheet of `domains` with a cross at each corner of both plates, and one more on the top plate."""
     sheet, wanted = domains(), job(chosen, gap_um)
     frame = arrange(sheet.vertices, wanted)
-    bottom = np.concatenate([cross(*centre) for centre in frame.marks])
+    bottom = np.concatenate([cross(*centre) for centre in frame.marks[:4]])
     top = np.concatenate([bottom, cross(frame.marks[0, 0], 0.0)])
     return assemble(frame, wanted, sheet, {"bottom": bottom, "top": top}, hatched(sheet, wanted))

@@ -4,7 +4,7 @@ from sheets import b20, design, single
 
 from lce_solver.errors import InputError
 from lce_solver.types import Severity
-from lce_workbench.core.channels import Channels, blocks, corners, empty_domains, hatch
+from lce_workbench.core.channels import BLOCK, ChannelField, Channels, corners, empty_domains, hatch
 from lce_workbench.core.domains import Domains, partition, signed_area
 from lce_workbench.core.job import ChannelSpec
 
@@ -170,9 +170,9 @@ def test_a_domain_too_small_stays_empty_and_is_listed():
     channels = hatch(domains, "top", SPEC)
     assert channels.counts[0] == channels.counts[2] == 0
     assert channels.counts[1] > 50
-    (finding,) = empty_domains(channels)
+    (finding,) = empty_domains(ChannelField(domains, "top", SPEC))
     assert (finding.severity, finding.value, finding.where) == (Severity.WARNING, 2.0, "domain 0, 2")
-    assert empty_domains(hatch(partition(design(2, 2)), "top", SPEC)) == ()
+    assert empty_domains(ChannelField(partition(design(2, 2)), "top", SPEC)) == ()
 
 
 def test_channels_that_fit_nowhere_are_refused():
@@ -180,11 +180,20 @@ def test_channels_that_fit_nowhere_are_refused():
         hatch(single([[0, 0], [0.1, 0], [0, 0.1]], 0.2), "bottom", ChannelSpec(width_um=90))
 
 
-@pytest.mark.parametrize("size", [1, 40, 1000, 10**6])
-def test_blocks_hold_whole_domains(size):
-    channels = hatch(partition(design(3, 3, width=0.6, height=0.6)), "bottom", SPEC)
-    rows = list(blocks(channels, size))
-    assert [r.start for r in rows] == [0, *(r.stop for r in rows[:-1])]
-    assert rows[-1].stop == len(channels)
-    owners = [set(channels.domain[r].tolist()) for r in rows]
-    assert sum(map(len, owners)) == len(set.union(*owners)) == 18
+@pytest.mark.parametrize("plate", ["bottom", "top"])
+def test_a_field_holds_the_same_channels_block_by_block(plate):
+    domains = partition(design(6, 8, width=0.6, height=0.6))
+    whole, field = hatch(domains, plate, SPEC), ChannelField(domains, plate, SPEC)
+    parts = list(field)
+    assert len(parts) == -(-len(domains) // BLOCK) == 2
+    for name in ("centre", "length", "domain"):
+        assert np.array_equal(np.concatenate([getattr(part, name) for part in parts]), getattr(whole, name))
+    owners = [set(part.domain.tolist()) for part in parts]
+    assert sum(map(len, owners)) == len(set.union(*owners)) == len(domains)
+    assert np.array_equal(np.concatenate([corners(part) for part in parts]), corners(whole))
+    assert np.array_equal(field.counts, whole.counts)
+
+
+def test_a_field_that_fits_nowhere_is_refused():
+    with pytest.raises(InputError, match="fits into none of the domains"):
+        _ = ChannelField(single([[0, 0], [0.1, 0], [0, 0.1]], 0.2), "top", ChannelSpec(width_um=90)).counts

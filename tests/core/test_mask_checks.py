@@ -5,6 +5,7 @@ import pytest
 from sheets import both_masks, design
 
 from lce_solver.types import Severity
+from lce_workbench.core.channels import ChannelField
 from lce_workbench.core.domains import partition
 from lce_workbench.core.job import Job
 from lce_workbench.core.mask import flipped
@@ -15,13 +16,18 @@ JOB = Job()
 FRAME, CHANNELS, MASKS = both_masks(DOMAINS, JOB)
 
 
+def many_corners(_):
+    angle = 2 * np.pi * np.arange(5000) / 5000
+    return np.rint(2e7 * np.stack([np.cos(angle), np.sin(angle)], axis=1)).astype(np.int32)[None]
+
+
 def found(mask, domains=DOMAINS):
-    return {f.check: f for f in check(mask, domains, CHANNELS[mask.plate], FRAME, JOB)}
+    return {f.check: f for f in check(mask, ChannelField(domains, mask.plate, JOB.channels), FRAME, JOB)}
 
 
 def changed(mask, layer, change):
     """The mask with a changed copy of one layer."""
-    copy = mask.layers[layer][0].copy()
+    copy = np.concatenate([*mask.layers[layer]])
     result = change(copy)
     return replace(mask, layers={**mask.layers, layer: (copy if result is None else result,)})
 
@@ -93,7 +99,11 @@ def onto_the_sheet(p):
 
 
 def onto_the_spacer(p):
-    p[0, :, 0] += round(FRAME.strips[0].x1 / 1e-6) - p[0, :, 0].max()
+    p[0, :, 0] += round(FRAME.strips[0].x0 / 1e-6) - p[0, :, 0].max()
+
+
+def into_the_fill(p):
+    p[0] += np.rint(np.array([0.0, FRAME.fill.y0 / 1e-6]) - p[0].mean(axis=0)).astype(np.int32)
 
 
 def onto_the_next(p):
@@ -109,8 +119,10 @@ FAULTS = {
     "channel_area": ("CHANNELS", half_of_them),
     "polygon_convex": ("CHANNELS", bow_tie),
     "polygon_edge": ("LABELS", merge_corners),
+    "polygon_corners": ("PLATE", many_corners),
     "domain_border": ("DOMAINS", shift_first((2, 0))),
     "marks_sheet": ("MARKS", onto_the_sheet),
+    "marks_fill": ("MARKS", into_the_fill),
     "marks_spacer": ("MARKS", onto_the_spacer),
     "marks_disjoint": ("MARKS", onto_the_next),
     "extent": ("PLATE", lambda p: p * 9),
@@ -151,5 +163,10 @@ def test_a_forgotten_mirror_is_seen():
 
 
 def test_the_angle_check_knows_the_sign_of_the_twist():
-    wrong = replace(DOMAINS, dtheta=-DOMAINS.dtheta)
-    assert found(MASKS["top"], wrong)["channel_angle"].value > 0.1
+    def turn(p):
+        """Each channel about its middle, from -(theta + dtheta / 2) to -(theta - dtheta / 2)."""
+        middle = p.mean(axis=1, keepdims=True)
+        points = (p - middle) @ [1, 1j] * np.exp(1j * DOMAINS.dtheta[CHANNELS["top"].domain])[:, None]
+        return np.rint(middle + np.stack([points.real, points.imag], axis=2)).astype(np.int32)
+
+    assert found(changed(MASKS["top"], "CHANNELS", turn))["channel_angle"].value > 0.1

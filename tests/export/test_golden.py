@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import klayout.db as kdb
+import numpy as np
 import pytest
 from golden.renew import FOLDER, small_masks
 
@@ -40,7 +41,7 @@ def test_masks_are_the_golden_ones(tmp_path, plate):
 @pytest.mark.parametrize("layer", LAYERS)
 def test_a_nanometre_more_is_seen(tmp_path, layer):
     mask = small_masks()["top"]
-    polygons = mask.layers[layer][0].copy()
+    polygons = np.concatenate([*mask.layers[layer]])
     polygons[-1, 0, 0] -= 1
     gdsii.write(replace(mask, layers={**mask.layers, layer: (polygons,)}), tmp_path / "mask.gds")
     assert differing(tmp_path / "mask.gds", FOLDER / "top.gds.gz") == [layer]
