@@ -33,9 +33,8 @@ size_um = 300.0
 CONTRACT = [
     "cad/bottom_plate.step", "cad/cell.FCStd", "cad/cell.glb", "cad/cell.step", "cad/channels_bottom.step",
     "cad/channels_top.step", "cad/spacer.step", "cad/top_plate.step", "design.npz", "domains.csv", "job.toml",
-    "manifest.json", "mask/bottom.dxf", "mask/bottom.gds", "mask/bottom.oas", "mask/job_sheet.txt",
-    "mask/readings.csv", "mask/top.dxf", "mask/top.gds", "mask/top.oas",
-    "prediction.json", "prediction.npz",
+    "manifest.json", "mask/bottom.dxf", "mask/bottom.gds", "mask/bottom.oas", "mask/job_sheet.txt", "mask/readings.csv",
+    "mask/top.dxf", "mask/top.gds", "mask/top.oas", "prediction.json", "prediction.npz",
 ]  # fmt: skip
 
 
