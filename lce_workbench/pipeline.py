@@ -71,6 +71,8 @@ def build(job: Job, base: Path, out: Path, names: Sequence[str], progress: Progr
         A fault that leaves ``out`` as it was.
     """
     _require_formats(job)
+    if "cad" in names and job.output.freecad:
+        freecad()
     former: dict[str, Any] = {} if names[0] == "design" else read_manifest(out)
     records = [r for r in former.get("findings", ()) if r["stage"] not in names]
     with staged(out, keep=out if former else None) as folder:
@@ -249,17 +251,28 @@ def run_freecad(command: str, folder: Path) -> None:
     LceError
         FreeCAD is missing, or the command failed; its own sentence and exit code are passed on.
     """
-    program = shutil.which("freecadcmd") or shutil.which("FreeCADCmd")
-    if program is None:
-        msg = "freecadcmd is missing, so cad/cell.FCStd cannot be written; install FreeCAD or set output.freecad=false"
-        raise EnvironmentFault(msg)
-    call = [program, str(ROOT / "lce_workbench" / "batch.py"), "--", command, str(folder)]
+    call = [freecad(), str(ROOT / "lce_workbench" / "batch.py"), "--", command, str(folder)]
     done = subprocess.run(call, capture_output=True, text=True, check=False, env={**os.environ, "LC_ALL": "C.UTF-8"})
     if done.returncode:
         said = done.stderr.strip().splitlines() or [f"no message, exit code {done.returncode}"]
         fault = LceError(f"FreeCAD could not write the document: {said[-1].removeprefix('lce: ')}")
         fault.exit_code = done.returncode
         raise fault
+
+
+def freecad() -> str:
+    """FreeCAD's program without a window.
+
+    Raises
+    ------
+    EnvironmentFault
+        It is not installed.
+    """
+    program = shutil.which("freecadcmd") or shutil.which("FreeCADCmd")
+    if program is None:
+        msg = "freecadcmd is missing, so cad/cell.FCStd cannot be written; install FreeCAD or set output.freecad=false"
+        raise EnvironmentFault(msg)
+    return program
 
 
 STAGES: dict[str, Callable[[Run], Findings]] = {

@@ -200,6 +200,15 @@ def test_an_unwritable_output_ends_with_4(capsys, tmp_path, job):
     assert "cannot be written" in sentence
 
 
+def test_a_missing_freecad_is_told_before_the_work_begins(capsys, tmp_path, job, monkeypatch):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    code, sentence = said(capsys, "build", job, "--out", tmp_path / "out")
+    assert code == 4
+    assert "freecadcmd is missing" in sentence
+    assert "output.freecad=false" in sentence
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_solver_that_is_stopped_early_says_so_and_ends_with_3(tmp_path, job):
     out = tmp_path / "early"
     assert main(["design", str(job), "--quiet", "--out", str(out), "--set", "solver.max_iterations=2"]) == 3
