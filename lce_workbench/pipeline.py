@@ -32,7 +32,9 @@ from lce_workbench.core.job_sheet import job_sheet, totals
 from lce_workbench.core.marks import fingerprint, marks
 from lce_workbench.core.mask import compose
 from lce_workbench.core.mask_checks import check
+from lce_workbench.core.units import UM
 from lce_workbench.export import EXPORTERS
+from lce_workbench.export.pictures import write_pictures
 from lce_workbench.export.table import write_table
 from lce_workbench.outputs import (
     as_record,
@@ -189,15 +191,18 @@ def run_mask(run: Run) -> Findings:
     code = fingerprint(domains, run.job.channels)
     (folder / "readings.csv").write_text(align.form(frame, run.job, code), encoding="ascii")
     found: list[Finding] = [*left_out(frame, run.job)]
-    counted = {}
+    masks, counted = {}, {}
     for k, plate in enumerate(PLATES):
         field = ChannelField(domains, plate, run.job.channels)
-        mask = compose(frame, field, run.job)
+        masks[plate] = mask = compose(frame, field, run.job)
         found += (*empty_domains(field), *check(mask, field, frame, run.job))
         counted[plate] = totals(mask)
         for j, name in enumerate(run.job.output.masks):
             run.progress(f"mask {plate}.{name}", (k + j / len(run.job.output.masks)) / len(PLATES))
             EXPORTERS[name](mask, folder / f"{plate}.{name}")
+    output = run.job.output
+    if output.pictures:
+        write_pictures(frame, domains, masks, folder, (output.overlay_x_um * UM, output.overlay_y_um * UM))
     (folder / "job_sheet.txt").write_text(job_sheet(frame, run.job, counted, code), encoding="ascii")
     run.progress("mask", 1.0)
     return tuple(found)

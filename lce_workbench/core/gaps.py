@@ -16,14 +16,15 @@ PAIRS = 200_000
 """Pairs measured at once."""
 
 
-def smallest_gap(polygons: Floats) -> float:
-    """Smallest gap between any two of the polygons (n, k, 2), negative where they overlap; at most ``SEEN`` [nm].
+def smallest_gap(quadrilaterals: Floats) -> float:
+    """Smallest gap between any two of convex (n, 4, 2), negative where they overlap; at most ``SEEN`` [nm].
 
     The gap is the largest distance along the normal of an edge of either: the true distance where an edge faces the
     other polygon, less than it between two corners.
     """
     found = SEEN
-    first, second = _near(polygons)
+    polygons, whole = _cut(quadrilaterals)
+    first, second = _near(polygons, whole)
     for start in range(0, len(first), PAIRS):
         a, b = (polygons[owner[start : start + PAIRS]] for owner in (first, second))
         found = min(found, float(np.maximum(_apart(a, b), _apart(b, a)).min()))
@@ -41,31 +42,45 @@ def _apart(a: Floats, b: Floats) -> Floats:
     return best
 
 
-def _near(polygons: Floats) -> tuple[Ints, Ints]:
-    """Pairs (n,) (n,) of polygons whose bounding boxes, grown by half of `SEEN`, meet."""
+def _cut(quadrilaterals: Floats) -> tuple[Floats, Ints]:
+    """Pieces (m, 4, 2), cut across edge 0, whose bounding boxes are about a tile, and what each is a piece of (m,)."""
+    box = np.ptp(quadrilaterals, axis=1).min(axis=1)
+    pieces = np.ceil(np.maximum(box / TILE, 1.0)).astype(np.int64)
+    whole = np.repeat(np.arange(len(pieces)), pieces)
+    place = np.arange(len(whole)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    start, stop = ((place + i) / pieces[whole] for i in (0, 1))
+    a, b, c, d = (quadrilaterals[whole, i] for i in range(4))
+    corners = [p + (q - p) * t[:, None] for p, q, t in ((a, b, start), (a, b, stop), (d, c, stop), (d, c, start))]
+    return np.stack(corners, axis=1), whole
+
+
+def _near(polygons: Floats, whole: Ints) -> tuple[Ints, Ints]:
+    """Pairs (n,) (n,) of pieces of different polygons whose bounding boxes, grown by half of `SEEN`, meet."""
     low, high = polygons.min(axis=1) - SEEN / 2, polygons.max(axis=1) + SEEN / 2
+    low, high = low - low.min(axis=0), high - low.min(axis=0)
     owner, tile = _tiles(low, high)
-    order = np.argsort(tile, kind="stable")
+    order = np.argsort(tile[:, 0] * (tile[:, 1].max(initial=0) + 1) + tile[:, 1], kind="stable")
     owner, tile = owner[order], tile[order]
     pairs = []
     for step in range(1, len(owner)):
-        same = tile[step:] == tile[:-step]
+        same = np.all(tile[step:] == tile[:-step], axis=1)
         if not same.any():
             break
         a, b = owner[:-step][same], owner[step:][same]
-        meet = np.all((low[a] <= high[b]) & (low[b] <= high[a]), axis=1)
-        pairs.append(a[meet] * len(polygons) + b[meet])
-    first, second = np.divmod(np.unique(np.concatenate(pairs or [np.empty(0, np.int64)])), len(polygons))
+        overlap = np.maximum(low[a], low[b])
+        once = np.all(np.floor(overlap / TILE) == tile[step:][same], axis=1)  # not again in each tile they share
+        meet = once & (whole[a] != whole[b]) & np.all(overlap <= np.minimum(high[a], high[b]), axis=1)
+        pairs.append(np.stack([a[meet], b[meet]]))
+    first, second = np.concatenate(pairs or [np.empty((2, 0), np.int64)], axis=1)
     return first, second
 
 
 def _tiles(low: Floats, high: Floats) -> tuple[Ints, Ints]:
-    """Every tile that each box touches: index of the box, number of the tile."""
-    start, stop = (np.floor((p - low.min(axis=0)) / TILE).astype(np.int64) for p in (low, high))
+    """Every tile that each box touches: index of the box (n,), column and row of the tile (n, 2)."""
+    start, stop = (np.floor(p / TILE).astype(np.int64) for p in (low, high))
     size = stop - start + 1
     total = size[:, 0] * size[:, 1]
     owner = np.repeat(np.arange(len(low)), total)
     place = np.arange(len(owner)) - np.repeat(np.cumsum(total) - total, total)
     column, row = np.divmod(place, size[owner, 1])
-    columns = start[owner, 0] + column
-    return owner, columns * (int(stop[:, 1].max(initial=0)) + 1) + start[owner, 1] + row
+    return owner, start[owner] + np.stack([column, row], axis=1)

@@ -187,6 +187,9 @@ class Output:
     masks: tuple[str, ...] = param(
         ("gds", "oas", "dxf"), "mask formats: gds, oas, dxf (R2000, for CAD), r12.dxf (for the writer, um), cif"
     )
+    pictures: bool = param(True, "pictures of the masks, mask/*.png")
+    overlay_x_um: float = param(5.0, "shift of the top plate in the picture overlay.png", unit="um")
+    overlay_y_um: float = param(-3.0, "the same along y", unit="um")
     writer_um: float = param(0.8, "smallest line and land of the laser writer's mode", unit="um", above=0.0, high=100.0)
     freecad: bool = param(True, "write the FreeCAD document cad/cell.FCStd (needs freecadcmd)")
     step_domains: tuple[int, ...] = param((), "domains whose channels become solids; default: the most central")

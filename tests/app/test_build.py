@@ -19,6 +19,7 @@ from scipy.spatial.transform import Rotation
 
 from lce_workbench import ROOT
 from lce_workbench.cli import main
+from lce_workbench.core.align import PLACES
 from lce_workbench.outputs import read_design
 
 JOB = """
@@ -30,10 +31,12 @@ width_mm = 3.0
 size_um = 300.0
 """
 
+CLUSTERS = sorted(f"mask/cluster_{place.replace(' ', '_')}.png" for place in PLACES)
 CONTRACT = [
     "cad/bottom_plate.step", "cad/cell.FCStd", "cad/cell.glb", "cad/cell.step", "cad/channels_bottom.step",
     "cad/channels_top.step", "cad/spacer.step", "cad/top_plate.step", "design.npz", "domains.csv", "job.toml",
-    "manifest.json", "mask/bottom.dxf", "mask/bottom.gds", "mask/bottom.oas", "mask/job_sheet.txt", "mask/readings.csv",
+    "manifest.json", "mask/border.png", "mask/bottom.dxf", "mask/bottom.gds", "mask/bottom.oas", *CLUSTERS,
+    "mask/domain.png", "mask/job_sheet.txt", "mask/overlay.png", "mask/overview.png", "mask/readings.csv",
     "mask/top.dxf", "mask/top.gds", "mask/top.oas", "prediction.json", "prediction.npz",
 ]  # fmt: skip
 

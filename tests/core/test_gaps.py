@@ -24,6 +24,14 @@ def test_far_polygons_have_no_gap_to_speak_of():
     assert smallest_gap(square(0, 0)[None]) == SEEN
 
 
+def test_long_oblique_lines():
+    """A grating at 30 degrees: each line's box meets many others, the gaps are the lands."""
+    x, y = np.array([0, 3e6, 3e6, 0]), np.array([0, 0, 1000, 1000])
+    lines = np.stack([np.stack([x, y + 1400 * k], axis=1) for k in range(300)])
+    c, s = np.cos(0.5), np.sin(0.5)
+    assert np.isclose(smallest_gap(lines @ np.array([[c, s], [-s, c]])), 400)
+
+
 def test_all_pairs_give_the_same_as_near_ones():
     rng = np.random.default_rng(4)
     many = np.array([square(*rng.uniform(0, 1.5e5, 2), side=2000, turn=rng.uniform(0, 2)) for _ in range(60)])
