@@ -68,13 +68,13 @@ def cone_angle(material):
 
 
 def fitted_cone_angle(flat, vertices):
-    """Half angle [rad] of the heated disk away from tip and edge, from radius against height about its axis."""
-    r = np.hypot(*flat.sheet.uv.T)
-    order = np.argsort(r)
-    rings = np.array_split(order[(r[order] > 0.3) & (r[order] < 0.8)], 8)
-    centres = np.array([vertices[ring].mean(axis=0) for ring in rings])
-    radii = [np.linalg.norm(vertices[ring] - vertices[ring].mean(axis=0), axis=1).mean() for ring in rings]
-    return np.arctan(np.polyfit(np.linalg.norm(centres - centres[0], axis=1), radii, 1)[0])
+    """Half angle [rad] of the heated disk away from tip and edge: its normals are at one angle from the axis."""
+    corners = vertices[flat.sheet.faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    r = polar((flat.sheet.uv, flat.sheet.faces))[0]
+    normals = (normals / np.linalg.norm(normals, axis=1)[:, None])[(r > 0.3) & (r < 0.8)]
+    axis = np.linalg.svd(normals - normals.mean(axis=0), full_matrices=False)[2][2]
+    return np.arcsin(abs(normals.mean(axis=0) @ axis))
 
 
 def cap_film(mesh, curvature=2.6, material=HOT, thickness=0.01):

@@ -25,8 +25,9 @@ ONSET = 2
 step goes far beyond, many short waves grow at once, and a sheet without twist ends in a wrong isometry. The path of
 heating is part of the answer: of a sheet with several isometries, another path may find another one. `heat` follows
 any path."""
-SETTLED = 1e-4
-"""The last step ends when a further iteration would save less than this times thickness^3 / 12."""
+SETTLED = 1e-6
+"""The last step ends when a further iteration would save less than this times thickness^3 / 12. At 1e-4 a symmetric
+state that is not stable could pass for a minimum: what then grows from the imperfection saves no more at first."""
 PASSING = 1e-2
 """The same for the others, times the square of the share of the strain: a sheet about to buckle has little to save."""
 FOUNDATION = 0.1

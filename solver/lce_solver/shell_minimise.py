@@ -12,7 +12,9 @@ from lce_solver.types import Floats, Status
 
 MEMORY = 10
 REFRESH = 12
-"""Iterations between factorisations; a step that had to be cut brings the next one forward."""
+"""Iterations between factorisations."""
+PATIENCE = 3
+"""A step that had to be cut brings the next factorisation forward, to no fewer iterations than this."""
 SUFFICIENT = 1e-4
 """Share of the predicted decrease that a step must achieve (Armijo)."""
 SHORTEST = 1e-8
@@ -78,7 +80,7 @@ def minimise(
             _remember(pairs, found.x - at.x, found.gradient - at.gradient)
             at = found
         age += 1
-        if found is None or fraction < 1 or age >= REFRESH:
+        if found is None or (fraction < 1 and age >= PATIENCE) or age >= REFRESH:
             solve, age, factorisations = factorise(at.x), 0, factorisations + 1
     return Minimum(at.x, at.energy, Status.ITERATION_LIMIT, limit, factorisations, saving)
 

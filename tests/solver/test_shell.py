@@ -195,24 +195,20 @@ def test_uniform_director_stretches_the_sheet_and_leaves_it_flat(material):
 
 
 def test_circles_heat_into_the_cone():
-    angles = []
-    for rings in (8, 20):
-        flat = cone_film(disk(rings))
-        found = predict(flat, seed=0)
-        assert found.status is Status.CONVERGED
-        angles.append(abs(fitted_cone_angle(flat, found.vertices) - cone_angle(flat.material)))
-    assert np.degrees(angles[1]) < 0.25
-    assert angles[1] < 0.5 * angles[0]
+    flat = cone_film(disk(14))
+    found = predict(flat, seed=0)
+    assert found.status is Status.CONVERGED
+    assert np.degrees(fitted_cone_angle(flat, found.vertices) - cone_angle(flat.material)) == pytest.approx(0, abs=0.1)
 
 
-def test_the_field_of_constant_curvature_heats_into_a_spherical_cap():
+def test_the_field_of_constant_curvature_converges_to_a_spherical_cap():
     errors = []
-    for rings in (10, 20):
-        found = predict(cap_film(disk(rings)), seed=1)
+    for rings in (9, 18):
+        found = predict(cap_film(disk(rings, jitter=0)), seed=1)
         assert found.status is Status.CONVERGED
         errors.append(abs(fitted_radius(found.vertices) * np.sqrt(2.6) - 1))
-    assert errors[1] < 0.011
-    assert errors[1] < 0.45 * errors[0]
+    assert errors[1] < 0.0125
+    assert np.log2(errors[0] / errors[1]) > 1.5  # the director is sampled once per triangle: second order
 
 
 def prescribed(flat):
@@ -241,16 +237,23 @@ def test_a_narrow_twisted_strip_winds_by_the_prescribed_curvature(sign):
 
 
 def test_a_wide_twisted_sheet_rolls_up():
-    """It cannot be a saddle, so it rolls along a diagonal, by 1 - nu_e of the prescribed curvature."""
-    flat = uniform(disk(12), Material(0.9, 0.5), 0.01, dtheta=0.2)
+    """It cannot be a saddle, so it rolls about a diagonal, by 1 - nu_e of the prescribed curvature."""
+    flat = uniform(rectangle(24, 10, 1.6, 0.7, turn=np.pi / 4), Material(0.9, 0.5), 0.01, dtheta=0.2)
     found = predict(flat, seed=0)
-    metric = np.diag([flat.material.along, flat.material.across])
-    b11, b22, b12 = quadratic_fit(flat, found.vertices, 0.5)
-    small, large = np.linalg.eigvalsh(np.linalg.inv(metric) @ [[b11, b12], [b12, b22]] @ np.linalg.inv(metric))
+    b11, b22, b12 = quadratic_fit(flat, found.vertices, 0.25)
+    stretch = np.diag([1 / flat.material.along, 1 / flat.material.across])
+    curvatures = np.linalg.eigvalsh(stretch @ [[b11, b12], [b12, b22]] @ stretch)
+    straight, rolled = sorted(curvatures, key=abs)
     twisted = prescribed(flat) / (flat.material.along * flat.material.across)
-    rolled, straight = sorted((small, large), key=abs, reverse=True)
-    assert abs(rolled) == pytest.approx(0.5 * abs(twisted), rel=0.1)
+    assert abs(rolled) == pytest.approx(0.5 * abs(twisted), rel=0.03)
     assert abs(straight) < 0.05 * abs(rolled)
+
+
+def test_a_symmetric_state_that_is_not_stable_does_not_pass_for_a_minimum():
+    """A twisted disk first bends like a saddle; long before the end that costs more than to roll up."""
+    flat = uniform(disk(8), Material(0.9, 0.5), 0.01, dtheta=0.08)
+    saddle = predict(flat, seed=0, imperfection=0.0, tolerance=1e-3)
+    assert predict(flat, seed=0).energy < 0.95 * saddle.energy
 
 
 @pytest.mark.parametrize("k", [3.0, -3.0])
