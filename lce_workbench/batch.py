@@ -6,6 +6,7 @@ FreeCAD 0.20 ends with 0 when a script raises, and then runs it a second time; s
 
 from __future__ import annotations
 
+import os
 import sys
 import traceback
 from pathlib import Path
@@ -22,6 +23,7 @@ def arguments(argv: list[str]) -> list[str]:
 
 def run(argv: list[str]) -> int:
     """Run ``argv`` with the numeric packages of `./lce`, whose masks these must equal, and return the exit code."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as ./lce does, before NumPy reads it
     # FreeCAD puts the script's own folder on the path, where `core`, `export` and `app` would pass for packages.
     others = [path for path in sys.path if Path(path).resolve() != HERE]
     sys.path[:] = [str(ROOT), str(ROOT / "solver"), *others]

@@ -174,12 +174,12 @@ def run_predict(run: Run) -> Findings:
 
 
 def predicted(judged: Comparison) -> Finding:
-    """Whether the heated sheet takes the target shape."""
-    severity = {Verdict.TARGET: Severity.INFO, Verdict.EQUILIBRIUM: Severity.WARNING}
+    """Whether the heated sheet takes the target shape; a warning at most, for another path may end elsewhere."""
+    severity = Severity.INFO if judged.verdict is Verdict.TARGET else Severity.WARNING
     text = (
         f"{judged.verdict.value} ({judged.rms_pct:.2g}% rms, {judged.max_pct:.2g}% at most, of the target's diagonal)"
     )
-    return Finding("prediction", severity.get(judged.verdict, Severity.ERROR), text, judged.rms_pct, REACH, "%")
+    return Finding("prediction", severity, text, judged.rms_pct, REACH, "%")
 
 
 def run_mask(run: Run) -> Findings:
