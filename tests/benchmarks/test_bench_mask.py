@@ -12,7 +12,7 @@ import gdstk
 import klayout.db as kdb
 import numpy as np
 import pytest
-from in_freecad import environment, start
+from processes import environment, start
 from sheets import b20
 
 from lce_workbench.core.channels import ChannelField, hatch
