@@ -122,6 +122,7 @@ def run_design(run: Run) -> Findings:
         thickness=job.sheet.thickness,
         twist_gain=job.sheet.twist_gain,
         edge_overdrive=job.sheet.edge_overdrive,
+        twist_limit=job.sheet.twist_limit,
         starts=job.solver.starts,
         tolerance=job.solver.tolerance,
         max_iterations=job.solver.max_iterations,

@@ -5,6 +5,7 @@ Names carry the unit the user writes (`width_um`); the properties without a unit
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -43,8 +44,11 @@ class Target:
     surface: str = param("", "a shipped surface instead of a mesh: dome, saddle, leaf, cone, sphere-zone, face")
     subdivision: str = param(
         "loop",
-        "how a mesh coarser than the domains is refined: loop for smooth surfaces, midpoint for faceted ones",
+        "how a kept mesh coarser than the domains is refined: loop for smooth surfaces, midpoint for faceted ones",
         choices=("loop", "midpoint"),
+    )
+    remesh: bool = param(
+        True, "mesh the target anew, with even triangles of the domains' size; false keeps the triangles of the input"
     )
     flip: bool = param(False, "turn the surface over, so that its other side becomes the top of the sheet")
 
@@ -67,7 +71,15 @@ class Sheet:
     width_mm: float = param(20.0, "longest side of the flat sheet", unit="mm", above=0.0, high=200.0)
     gap_um: float = param(100.0, "film thickness = spacer thickness", unit="um", above=0.0, high=5000.0)
     twist_gain: float = param(1.0, "multiplies the twist; 2 reproduces the paper's S5 as printed", low=-10.0, high=10.0)
+    twist_limit_deg: float = param(
+        5.0, "largest twist through the thickness; what is beyond is cut off", unit="deg", above=0.0, high=90.0
+    )
     edge_overdrive: bool = param(False, "multiply the twist by 1 + 5 exp(-d / 2 mm), d = distance to the edge")
+
+    @property
+    def twist_limit(self) -> float:
+        """Largest twist [rad]."""
+        return math.radians(self.twist_limit_deg)
 
     @property
     def thickness(self) -> float:

@@ -9,11 +9,14 @@ import numpy as np
 
 from lce_solver.errors import InputError
 from lce_solver.metric import Stop, flatten, lay_flat
-from lce_solver.surface import load, mean_edge, subdivide
+from lce_solver.mirror import even_mesh
+from lce_solver.surface import face_areas, load, mean_edge, subdivide
 from lce_solver.surfaces import SURFACES
 from lce_solver.types import Design, Finding, Floats, Ints, Material, Severity, Surface
 from lce_workbench.core.job import Job
 
+TRIAL = 1000
+"""Triangles of the trial mesh of a mesh file."""
 COARSE = 0.08
 """Edge of the trial mesh of a shipped surface, as a fraction of its size; enough to know the sheet's scale."""
 
@@ -36,12 +39,14 @@ def _shipped(job: Job, material: Material) -> tuple[Surface, tuple[Finding, ...]
         msg = f"target.surface {name!r} is unknown; shipped are {', '.join(SURFACES)}"
         raise InputError(msg)
     coarse = SURFACES[name](COARSE)
-    per_edge = flat_edge(coarse, job, material) / mean_edge(coarse)
-    return SURFACES[name](job.domains.size / per_edge), ()
+    edge = job.domains.size / (flat_edge(coarse, job, material) / mean_edge(coarse))
+    return even_mesh(SURFACES[name](edge), edge) if job.target.remesh else SURFACES[name](edge), ()
 
 
 def _meshed(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Finding, ...]]:
     surface, found = load(base / job.target.mesh)
+    if job.target.remesh:
+        return _resampled(surface, job, material), found
     size, flat = job.domains.size, flat_edge(surface, job, material)
     if flat <= size:
         return surface, found
@@ -51,6 +56,12 @@ def _meshed(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Fi
         f"{len(surface.faces)} to {len(fine.faces)} triangles ({job.target.subdivision} subdivision)"
     )
     return fine, (*found, Finding("subdivided", Severity.INFO, text, flat * 1e3, job.domains.size_um, "um"))
+
+
+def _resampled(surface: Surface, job: Job, material: Material) -> Surface:
+    """Even triangles of the domains' size, whatever the input's: a trial with about `TRIAL` of them gives the scale."""
+    trial = even_mesh(surface, float(np.sqrt(4 / np.sqrt(3) * face_areas(surface).sum() / TRIAL)))
+    return even_mesh(surface, job.domains.size * mean_edge(trial) / flat_edge(trial, job, material))
 
 
 def flat_edge(surface: Surface, job: Job, material: Material) -> float:
@@ -75,5 +86,5 @@ def sized(design: Design, job: Job) -> tuple[Finding, ...]:
     text = f"{len(design.theta)} domains have a mean edge of {edge_um:.0f} um, asked were {asked:g} um"
     fine = edge_um < 0.5 * asked
     if fine:
-        text += "; the mesh is finer than the domains, simplify it or ask for smaller domains"
+        text += "; the mesh is finer than the domains, let target.remesh be true or ask for smaller domains"
     return (Finding("domain_edge", Severity.WARNING if fine else Severity.INFO, text, edge_um, asked, "um"),)

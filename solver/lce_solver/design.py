@@ -8,13 +8,17 @@ import numpy as np
 
 from lce_solver import judge
 from lce_solver.assess import assess
+from lce_solver.bounded import bounded_twist, cost
+from lce_solver.contest import compete
 from lce_solver.errors import InputError
 from lce_solver.geometry import area_vectors, face_areas
-from lce_solver.metric import Stop, compete
+from lce_solver.metric import Stop
 from lce_solver.plane import rectangle_angles, turn
-from lce_solver.twist import bending_left, edge_factor, second_form, twist
+from lce_solver.twist import bending_left, second_form
 from lce_solver.types import Design, Floats, Material, Progress, Surface, line_angle, silent
 
+FOLLOWED = 3.0
+"""Thicknesses over which a film evens out its bending: a plate's edge effects reach about that far."""
 SIDEWAYS = 0.1
 """If less than this of the x axis is seen along the mean normal, the y axis points right instead."""
 
@@ -27,6 +31,8 @@ def design(
     *,
     twist_gain: float = 1.0,
     edge_overdrive: bool = False,
+    twist_filter: float = FOLLOWED,
+    twist_limit: float = np.inf,
     starts: int = 12,
     tolerance: float = 1e-8,
     max_iterations: int = 5000,
@@ -44,6 +50,8 @@ def design(
     thickness : of the film as prepared [mm].
     twist_gain : multiplies the twist; 2 gives the paper's S5 as printed, up to the stretch of the thickness.
     edge_overdrive : multiply the twist by the paper's ``1 + 5 exp(-d / 2 mm)``, d = distance to the sheet's edge.
+    twist_filter : length over which the bending is averaged before the twist is taken from it [thicknesses].
+    twist_limit : largest twist either way; what is beyond is cut off [rad].
     starts : number of directions of the first stretch that compete.
 
     Raises
@@ -64,13 +72,11 @@ def design(
     uv = (lying - (low + high) / 2) * scale
     theta = line_angle(flat.theta + angle)
     form = second_form(target, uv)
-    gain = twist_gain * (edge_factor(uv, target.faces) if edge_overdrive else 1.0)
-    dtheta = gain * twist(form, theta, material, thickness)
     result = Design(
         surface=target,
         uv=uv,
         theta=theta,
-        dtheta=dtheta,
+        dtheta=np.zeros_like(theta),
         stretch=judge.stretches(target, uv, material),
         material=material,
         thickness=thickness,
@@ -78,7 +84,12 @@ def design(
         bending_left=bending_left(form, theta, material, face_areas(target)),
         starts=competed,
     )
-    return replace(result, findings=assess(result))
+    length = twist_filter * thickness
+    dtheta = bounded_twist(
+        form, result, gain=twist_gain, overdrive=edge_overdrive, filter_length=length, limit=twist_limit
+    )
+    result = replace(result, dtheta=dtheta)
+    return replace(result, findings=(*assess(result), cost(form, result, twist_limit)))
 
 
 def sheet_angle(uv: Floats, surface: Surface) -> float:

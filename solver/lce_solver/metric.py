@@ -9,11 +9,10 @@ import numpy as np
 
 from lce_solver import judge
 from lce_solver.descent import Method, Minimum, Tick, minimise, unheard
-from lce_solver.geometry import face_areas
-from lce_solver.plane import convex_map, long_side_along_x
+from lce_solver.mirror import twins
+from lce_solver.plane import axis_along_x, convex_map, long_side_along_x
 from lce_solver.topology import boundary_loops
-from lce_solver.twist import bending_left, bending_tensor, pull_back
-from lce_solver.types import Flattening, Floats, Ints, Material, Progress, Start, Status, Surface, silent
+from lce_solver.types import Flattening, Floats, Ints, Status, Surface
 from lce_solver.wirtinger import Complexes, Operator, director, energy, operator, stretched
 
 Stretches = tuple[float, float]
@@ -28,10 +27,6 @@ ISOMETRIC: Stretches = (1.0, 1.0)
 """With these stretches the energy is that of an as-rigid-as-possible map."""
 ROUGH = 1e-6
 """Tolerance of the as-rigid-as-possible map: the director's stretch changes it anyway."""
-TYPICAL = 300
-"""Iterations of one start, for the progress bar only."""
-TIE = 1e-6
-"""Scores as close as this are equal (symmetric targets); the smaller angle wins, so that the result is repeatable."""
 
 
 @dataclass(frozen=True)
@@ -53,14 +48,18 @@ class Rigid:
     surface: Surface
     operator: Operator
     w: Complexes
-    """(n_v,) flat coordinates; the long side of their smallest rectangle lies along x."""
+    """(n_v,) flat coordinates; their mirror axis lies along x, or the long side of their smallest rectangle."""
+    twins: Ints | None
+    """(n_v,) each vertex's mirror image, if the mesh is symmetric vertex by vertex."""
 
 
 def lay_flat(surface: Surface) -> Rigid:
     """Map the disk to a circle (always valid), then minimise the same energy with both stretches 1."""
     op = operator(surface)
-    w = _descend(op, _complex(convex_map(surface)), ISOMETRIC, method="lbfgs", stop=Stop(ROUGH)).x
-    return Rigid(surface, op, _complex(long_side_along_x(_plane(w))))
+    w = _descend(op, as_complex(convex_map(surface)), ISOMETRIC, method="lbfgs", stop=Stop(ROUGH)).x
+    twin = twins(surface)
+    aligned = as_complex(long_side_along_x(as_points(w))) if twin is None else axis_along_x(w, twin)
+    return Rigid(surface, op, aligned, twin)
 
 
 def flatten(
@@ -81,14 +80,34 @@ def flatten(
     tick : called before each iteration with its number; it may raise to stop.
     """
     start = stretched(rigid.w, stretches, angle)
-    found = _descend(rigid.operator, start, stretches, method=method, stop=stop, tick=tick)
-    uv = _plane(found.x)
+    return refine(rigid.surface, rigid.operator, start, stretches, stop, method=method, twin=rigid.twins, tick=tick)
+
+
+def refine(
+    surface: Surface,
+    op: Operator,
+    start: Complexes,
+    stretches: Stretches,
+    stop: Stop = DEFAULT,
+    *,
+    method: str = "lbfgs",
+    twin: Ints | None = None,
+    tick: Tick = unheard,
+) -> Flattening:
+    """Minimise the energy from any flat coordinates ``start`` (n_v,), u + i v.
+
+    Parameters
+    ----------
+    twin : (n_v,) each vertex's mirror image, to keep a symmetric start symmetric against rounding.
+    """
+    found = _descend(op, start, stretches, method=method, stop=stop, twin=twin, tick=tick)
+    uv = as_points(found.x)
     finite = bool(np.isfinite(found.history[-1]))
-    flipped = judge.flipped(uv, rigid.surface.faces)
-    crossings = _outline_crossings(uv, rigid.surface.faces) if finite else np.empty((0, 2), np.int64)
+    flipped = judge.flipped(uv, surface.faces)
+    crossings = _outline_crossings(uv, surface.faces) if finite else np.empty((0, 2), np.int64)
     return Flattening(
         uv=uv,
-        theta=director(rigid.operator, found.x, stretches),
+        theta=director(op, found.x, stretches),
         status=_status(finite, len(flipped), len(crossings), found.converged),
         energy=found.history,
         iterations=len(found.history) - 1,
@@ -101,56 +120,6 @@ local_global = partial(flatten, method="local_global")
 """The paper's method (Liu et al. 2008): same start, same energy, same answer, many more iterations."""
 
 
-def compete(
-    surface: Surface, material: Material, starts: int = 12, stop: Stop = DEFAULT, progress: Progress = silent
-) -> tuple[Flattening, tuple[Start, ...]]:
-    """Minimise from stretches of the plane in ``starts`` directions and take the best.
-
-    The energy has many minima. The best has the smallest rms error x share of bending that twist cannot reach, among
-    those that are valid (no flipped triangle, simple outline); if none is, the one with the fewest faults is returned.
-
-    Returns
-    -------
-    The best flattening, and one record per start in the order of the angles.
-    """
-    rigid = lay_flat(surface)
-    bending = bending_tensor(surface)
-    results = []
-    for k in range(starts):
-        tick = partial(_report, progress, k / starts, 1 / starts)
-        angle = k * np.pi / starts
-        flat = flatten(rigid, (material.along, material.across), angle, stop, tick=tick)
-        results.append((flat, _record(surface, flat, material, angle, bending)))
-    progress("flatten", 1.0)
-    return results[best([start for _, start in results])][0], tuple(start for _, start in results)
-
-
-def _report(progress: Progress, done: float, share: float, iteration: int) -> None:
-    progress("flatten", done + share * iteration / (iteration + TYPICAL))
-
-
-def _record(surface: Surface, flat: Flattening, material: Material, angle: float, bending: Floats) -> Start:
-    area = face_areas(surface)
-    errors = judge.stretch_errors(judge.stretches(surface, flat.uv, material), material)
-    form = pull_back(bending, judge.jacobians(surface, flat.uv))
-    return Start(
-        angle=angle,
-        status=flat.status,
-        rms=judge.rms(errors, area),
-        bending_left=bending_left(form, flat.theta, material, area),
-        flipped=len(flat.flipped),
-        crossings=len(flat.crossings),
-    )
-
-
-def best(starts: list[Start]) -> int:
-    """Index of the smallest score among those with the fewest faults; the first of equals."""
-    faults = [start.flipped + start.crossings for start in starts]
-    valid = [k for k, fault in enumerate(faults) if fault == min(faults)]
-    limit = (1 + TIE) * min(starts[k].score for k in valid)
-    return next(k for k in valid if starts[k].score <= limit)
-
-
 def _descend(
     op: Operator,
     w: Complexes,
@@ -158,10 +127,15 @@ def _descend(
     *,
     method: str,
     stop: Stop,
+    twin: Ints | None = None,
     tick: Tick = unheard,
 ) -> Minimum:
+    def function(x: Complexes) -> tuple[float, Complexes]:
+        value, gradient = energy(op, x, stretches)
+        return value, gradient if twin is None else (gradient + gradient[twin].conj()) / 2
+
     return minimise(
-        lambda x: energy(op, x, stretches),
+        function,
         w,
         op.solve,
         method=METHODS[method],
@@ -188,9 +162,11 @@ def _outline_crossings(uv: Floats, faces: Ints) -> Ints:
     return pairs
 
 
-def _complex(uv: Floats) -> Complexes:
+def as_complex(uv: Floats) -> Complexes:
+    """(n,) u + i v of (n, 2) points."""
     return uv[:, 0] + 1j * uv[:, 1]
 
 
-def _plane(w: Complexes) -> Floats:
+def as_points(w: Complexes) -> Floats:
+    """(n, 2) points of (n,) u + i v."""
     return np.column_stack([w.real, w.imag])

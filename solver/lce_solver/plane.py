@@ -10,7 +10,7 @@ from scipy.spatial import ConvexHull
 
 from lce_solver.geometry import face_areas
 from lce_solver.topology import boundary_loops
-from lce_solver.types import Floats, Surface
+from lce_solver.types import Floats, Ints, Surface
 
 Complexes = NDArray[np.complex128]
 
@@ -77,3 +77,11 @@ def long_side_along_x(uv: Floats) -> Floats:
     lying = turn(uv, -rectangle_angles(uv)[0])
     width, height = np.ptp(lying, axis=0)
     return lying if width >= height else turn(lying, -np.pi / 2)
+
+
+def axis_along_x(w: Complexes, twin: Ints) -> Complexes:
+    """Turn and shift a nearly symmetric map so that mirror images (``twin``, (n,)) have conjugate coordinates."""
+    centred = w - w.mean()
+    turned = centred * np.exp(-0.5j * np.angle(np.vdot(centred.conj(), centred[twin])))
+    symmetric: Complexes = (turned + turned[twin].conj()) / 2
+    return symmetric

@@ -169,6 +169,10 @@ class Start:
     """Fraction of the target's bending (Frobenius norm) that twist cannot reach, in [0, 1]."""
     flipped: int
     crossings: int
+    symmetric: bool = False
+    """Whether the solution of a symmetric target was kept symmetric."""
+    triangles: int = 0
+    """Size of the finest mesh on which this start was solved; the figures are from there."""
 
     @property
     def score(self) -> float:

@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lce_solver.metric import Stop, compete, flatten, lay_flat
+from lce_solver.contest import compete
+from lce_solver.metric import Stop, flatten, lay_flat
 from lce_solver.subdivision import refine
 from lce_solver.surface import load
 from lce_solver.surfaces import SURFACES

@@ -118,9 +118,13 @@ def test_turned_over_target_keeps_its_twist(plan):
 
 
 def test_twist_scales_with_thickness_gain_and_size(plan):
-    np.testing.assert_allclose(design(hill(), LCE, 20.0, 0.2, **EXACT).dtheta, 2 * plan.dtheta, rtol=1e-12)
+    np.testing.assert_allclose(
+        design(hill(), LCE, 20.0, 0.2, **EXACT, twist_filter=1.5).dtheta, 2 * plan.dtheta, rtol=1e-12
+    )
     np.testing.assert_allclose(hill_design(twist_gain=-3.0).dtheta, -3 * plan.dtheta, rtol=1e-12)
-    np.testing.assert_allclose(design(hill(), LCE, 40.0, 0.1, **EXACT).dtheta, plan.dtheta / 2, rtol=1e-9)
+    np.testing.assert_allclose(
+        design(hill(), LCE, 40.0, 0.1, **EXACT, twist_filter=6.0).dtheta, plan.dtheta / 2, rtol=1e-9
+    )
 
 
 def test_edge_overdrive_only_raises_the_edge(plan):
@@ -140,6 +144,7 @@ def test_good_design_has_no_complaints():
         "stretch_max",
         "twist_limit",
         "twist_share",
+        "twist_cost",
     }
     assert {found.severity for found in plan.findings} == {Severity.INFO}
 
