@@ -17,6 +17,8 @@ from lce_workbench.core.job import Job
 
 TRIAL = 1000
 """Triangles of the trial mesh of a mesh file."""
+MAX_DOMAINS = 200_000
+"""Domains of a sheet of 120 mm at 350 um; it takes minutes and some gigabytes."""
 COARSE = 0.08
 """Edge of the trial mesh of a shipped surface, as a fraction of its size; enough to know the sheet's scale."""
 
@@ -40,6 +42,7 @@ def _shipped(job: Job, material: Material) -> tuple[Surface, tuple[Finding, ...]
         raise InputError(msg)
     coarse = SURFACES[name](COARSE)
     edge = job.domains.size / (flat_edge(coarse, job, material) / mean_edge(coarse))
+    _require_budget(coarse, edge)
     return even_mesh(SURFACES[name](edge), edge) if job.target.remesh else SURFACES[name](edge), ()
 
 
@@ -50,6 +53,7 @@ def _meshed(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Fi
     size, flat = job.domains.size, flat_edge(surface, job, material)
     if flat <= size:
         return surface, found
+    _require_budget(surface, mean_edge(surface) * size / flat)
     fine = subdivide(surface, mean_edge(surface) * size / flat, job.target.subdivision)
     text = (
         f"the mesh is coarser than the domains (mean edge {flat * 1e3:.0f} um on the sheet), so it was refined from "
@@ -61,7 +65,20 @@ def _meshed(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Fi
 def _resampled(surface: Surface, job: Job, material: Material) -> Surface:
     """Even triangles of the domains' size, whatever the input's: a trial with about `TRIAL` of them gives the scale."""
     trial = even_mesh(surface, float(np.sqrt(4 / np.sqrt(3) * face_areas(surface).sum() / TRIAL)))
-    return even_mesh(surface, job.domains.size * mean_edge(trial) / flat_edge(trial, job, material))
+    edge = job.domains.size * mean_edge(trial) / flat_edge(trial, job, material)
+    _require_budget(surface, edge)
+    return even_mesh(surface, edge)
+
+
+def _require_budget(surface: Surface, edge: float) -> None:
+    """Refuse a number of domains that would take hours, before anything starts."""
+    domains = float(face_areas(surface).sum()) * 4 / (np.sqrt(3) * edge**2)
+    if domains > MAX_DOMAINS:
+        msg = (
+            f"the sheet would have about {domains:.2g} domains, more than the {MAX_DOMAINS:.0g} that can be solved in "
+            "reasonable time; make domains.size_um larger or sheet.width_mm smaller"
+        )
+        raise InputError(msg)
 
 
 def flat_edge(surface: Surface, job: Job, material: Material) -> float:

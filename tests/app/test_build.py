@@ -166,6 +166,7 @@ def test_faults_of_the_user_end_with_2_and_one_sentence(capsys, tmp_path, job):
     assert "unknown; shipped are" in fails("build", job, "--set", "target.surface=dune")
     assert "format 'tiff' is unknown" in fails("build", job, '--set=output.masks=["tiff"]')
     assert "too small" in fails("build", job, "--set", "plates.width_mm=2")
+    assert "domains, more than" in fails("build", job, "--set", "sheet.width_mm=190", "domains.size_um=200")
     assert "not an output folder" in fails("mask", tmp_path)
     assert "invalid choice" in fails("fold", job)
     assert "required" in fails("build")
