@@ -6,7 +6,8 @@ import numpy as np
 
 from lce_solver import judge
 from lce_solver.geometry import face_areas
-from lce_solver.types import Design, Finding, Severity, Status
+from lce_solver.topology import neighbours
+from lce_solver.types import Design, Finding, Severity, Status, line_angle
 
 RMS_LIMIT = 0.05
 """Largest rms of the relative stretch errors that passes without a warning."""
@@ -23,7 +24,7 @@ REMEDY = {
 
 def assess(design: Design) -> tuple[Finding, ...]:
     """Measure a design; findings of severity error mean that the sheet must not be made."""
-    return (solved(design), *stretched(design), twisted(design), reached(design))
+    return (solved(design), *stretched(design), twisted(design), reached(design), rough(design))
 
 
 def solved(design: Design) -> Finding:
@@ -80,6 +81,17 @@ def reached(design: Design) -> Finding:
     share = float(np.sqrt(1 - design.bending_left**2))
     message = f"twist prescribes {share:.0%} of the target's bending; the metric must bring about the rest"
     return Finding("twist_share", Severity.INFO, message, value=share)
+
+
+def rough(design: Design) -> Finding:
+    """How much the director turns from one triangle to the next: the 99th percentile over all inner edges."""
+    half, _ = neighbours(design.surface.faces)
+    first, second = design.theta[half.T % len(design.theta)]
+    turn = line_angle(first - second)
+    jump = np.rad2deg(np.minimum(turn, np.pi - turn))
+    most = float(np.percentile(jump, 99)) if len(jump) else 0.0
+    message = f"the director turns by less than {most:.1f} deg across 99 of 100 borders of domains"
+    return Finding("director_jump", Severity.INFO, message, value=most, unit="deg")
 
 
 def _where(design: Design, triangle: int) -> str:

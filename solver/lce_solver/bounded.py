@@ -7,7 +7,7 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from lce_solver.geometry import face_areas
-from lce_solver.topology import edge_table
+from lce_solver.topology import half_edges, neighbours
 from lce_solver.twist import FLAT, edge_factor, in_director_frame, twist, twisted_form
 from lce_solver.types import Design, Finding, Floats, Ints, Severity
 
@@ -39,14 +39,11 @@ def filtered(values: Floats, uv: Floats, faces: Ints, length: float) -> Floats:
     """
     if length == 0:
         return values
-    _, which, count = edge_table(faces)
-    order = np.argsort(which, kind="stable")
-    second = np.flatnonzero((np.diff(which[order], prepend=-1) == 0) & (count[which[order]] == 2))
-    left, right = order[second - 1], order[second]
-    start, end = uv[faces.T.ravel()], uv[np.roll(faces, -1, axis=1).T.ravel()]
+    half, _ = neighbours(faces)
+    pair = half.T % len(faces)
+    ends = uv[half_edges(faces)[half[:, 0]]]
     middle = uv[faces].mean(axis=1)
-    pair = np.stack([left % len(faces), right % len(faces)])
-    side = np.linalg.norm(end[left] - start[left], axis=1)
+    side = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     flow = side / np.linalg.norm(middle[pair[0]] - middle[pair[1]], axis=1)
     graph = sparse.coo_array((flow, tuple(pair)), shape=(len(faces), len(faces)))
     graph = (graph + graph.T).tocsr()

@@ -19,8 +19,8 @@ from lce_solver.remesh import remesh
 from lce_solver.topology import boundary_loops, edges
 from lce_solver.types import Floats, Ints, Surface
 
-MISMATCH = 2e-3
-"""Largest distance of a target to its mirror image at which it counts as symmetric, in diagonals of its box."""
+MISMATCH = 5e-4
+"""Largest rms distance of a target to its mirror image at which it counts as symmetric, in diagonals of its box."""
 COINCIDE = 1e-7
 """Distance, in diagonals, at which a vertex is its neighbour's mirror image."""
 SNAP = 0.1
@@ -31,7 +31,7 @@ ALIKE = 0.02
 """Relative difference of the spreads along two principal axes below which every direction between them is tried."""
 SAMPLE = 400
 """Points that are compared for each direction."""
-FITS = 5
+FITS = 25
 """Corrections of the plane from pairs of points."""
 THIN = 0.05
 """A surface must reach this far to both sides of its mirror plane, in diagonals."""
@@ -65,12 +65,13 @@ def mirror_plane(surface: Surface) -> Plane | None:
     if not candidates:
         return None
     closest = _closest_on(surface)
-    miss = [float(np.abs(plane.image(points) - closest(plane.image(points))).max()) for plane in candidates]
-    plane = candidates[int(np.argmin(miss))]
+    misses = [float(np.abs(plane.image(points) - closest(plane.image(points))).max()) for plane in candidates]
+    plane = candidates[int(np.argmin(misses))]
     for _ in range(FITS):
         plane = _fitted(points, closest(plane.image(points)), plane)
     image = plane.image(surface.vertices)
-    return plane if np.linalg.norm(image - closest(image), axis=1).max() <= MISMATCH * diagonal else None
+    miss = np.sqrt(np.mean(np.sum((image - closest(image)) ** 2, axis=1)))
+    return plane if miss <= MISMATCH * diagonal else None
 
 
 def _candidates(surface: Surface) -> list[Plane]:
@@ -106,7 +107,7 @@ def _fitted(points: Floats, partners: Floats, plane: Plane) -> Plane:
 def even_mesh(surface: Surface, edge: float) -> Surface:
     """The surface with near-equilateral triangles of mean edge ``edge``; symmetric if the surface is.
 
-    Of a symmetric surface one half is meshed and mirrored, so vertices move by `MISMATCH` at most.
+    Of a symmetric surface one half is meshed and mirrored, so the surface changes by `MISMATCH` at most, rms.
 
     Raises
     ------
@@ -169,7 +170,10 @@ def twins(surface: Surface) -> Ints | None:
     if plane is None:
         return None
     diagonal = float(np.linalg.norm(np.ptp(surface.vertices, axis=0)))
-    distance, twin = cKDTree(surface.vertices).query(plane.image(surface.vertices))
+    near = cKDTree(surface.vertices)
+    _, twin = near.query(plane.image(surface.vertices))
+    plane = _fitted(surface.vertices, surface.vertices[twin], plane)  # from pairs of vertices it is exact
+    distance, twin = near.query(plane.image(surface.vertices))
     exact = distance.max() <= COINCIDE * diagonal and np.array_equal(twin[twin], np.arange(len(twin)))
     return np.asarray(twin, dtype=np.int64) if exact and _same_faces(surface.faces, twin) else None
 

@@ -33,6 +33,9 @@ __all__ = [
 TOLERANCE = 1e-6
 """Corners closer than this are one, and triangles thinner than this have no area; times the bounding-box diagonal."""
 
+FARTHEST = 1e100
+"""Coordinates from here on would overflow when squared and cubed."""
+
 
 def load(path: str | Path) -> tuple[Surface, tuple[Finding, ...]]:
     """Read a mesh file, weld what its format tore apart, orient its triangles and check that it is a disk.
@@ -107,10 +110,11 @@ def _check_elements(vertices: Floats, faces: Ints) -> None:
             "(counted from 0); the file is damaged, export the mesh again"
         )
         raise InputError(msg)
-    bad = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
+    bad = np.flatnonzero(~(np.abs(vertices) < FARTHEST).all(axis=1))
     if len(bad):
         msg = (
-            f"vertex {bad[0]} lies at {_at(vertices[bad[0]])}, which is not finite; remove it or export the mesh again"
+            f"vertex {bad[0]} lies at {_at(vertices[bad[0]])}, which is not finite or absurdly far; "
+            "remove it or export the mesh again"
         )
         raise InputError(msg)
 

@@ -7,15 +7,19 @@ From some starts they end in different minima; the energies are printed.
 """
 
 import os
+import resource
 import sys
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+from nasty import check_ends
 
 from lce_solver.contest import compete
+from lce_solver.geometry import mean_edge
 from lce_solver.metric import Stop, flatten, lay_flat
+from lce_solver.mirror import even_mesh
 from lce_solver.subdivision import refine
 from lce_solver.surface import load
 from lce_solver.surfaces import SURFACES
@@ -84,3 +88,34 @@ def test_accuracy_on_real_meshes(benchmark, name, capsys):
         sys.stdout.write(f"\n{name:>15} lowest rms {lowest:.4%}, winner's {winner.rms:.4%}\n")
     assert all(start.flipped == start.crossings == 0 for start in starts)
     assert lowest <= LIMITS[name]
+
+
+SIZES = {1_000: 15, 4_000: 15, 16_000: 15, 64_000: 90, 100_000: 90} if REAL else {}
+"""Triangles, and the seconds that they may take."""
+
+
+@pytest.mark.parametrize(("triangles", "seconds"), SIZES.items())
+def test_twelve_starts_at_every_size(benchmark, triangles, seconds, capsys):
+    """Processor seconds of the whole competition on the real face, and the largest memory of the process so far."""
+    surface = real("face.obj")
+    while len(surface.faces) < triangles * 0.9:
+        surface = refine(surface, "loop")
+    if len(surface.faces) > 1.2 * triangles:
+        surface = even_mesh(surface, mean_edge(surface) * np.sqrt(len(surface.faces) / triangles))
+    begin = time.process_time()
+    _, starts = benchmark.pedantic(lambda: compete(surface, PEER), rounds=1)
+    spent = time.process_time() - begin
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
+    last = [start for start in starts if start.triangles == len(surface.faces)]
+    with capsys.disabled():
+        lowest = min(start.rms for start in last)
+        sys.stdout.write(f"\n{len(surface.faces):7d} triangles: {spent:5.1f} s, {memory:.2f} GB, rms {lowest:.3%}\n")
+    assert spent < seconds
+    assert memory < 2
+
+
+def test_two_hundred_nasty_meshes(benchmark, tmp_path, capsys):
+    counts = benchmark.pedantic(check_ends, (range(200), tmp_path / "nasty.obj"), rounds=1)
+    with capsys.disabled():
+        sys.stdout.write(f"\n{counts}\n")
+    assert sum(counts.values()) == 200

@@ -7,7 +7,7 @@ import pytest
 from targets import LCE, flat, hill, line_difference, mirrored, moved, patch, ramp, renumbered, scaled, turned_over
 
 from lce_solver import judge
-from lce_solver.assess import solved
+from lce_solver.assess import rough, solved
 from lce_solver.design import design
 from lce_solver.errors import InputError
 from lce_solver.geometry import face_areas
@@ -145,6 +145,7 @@ def test_good_design_has_no_complaints():
         "twist_limit",
         "twist_share",
         "twist_cost",
+        "director_jump",
     }
     assert {found.severity for found in plan.findings} == {Severity.INFO}
 
@@ -200,3 +201,11 @@ def test_flipped_triangle_is_an_error_with_its_place(plan):
 def test_sizes_must_be_lengths(width, thickness, name):
     with pytest.raises(InputError, match=name):
         design(flat(), LCE, width, thickness)
+
+
+def test_director_jump_is_the_turn_across_edges(plan):
+    """One triangle turned by 80 degrees is 1 of 160, so a few of 200 edges jump; a turn by 180 degrees is none."""
+    theta = plan.theta.copy()
+    theta[77] += np.radians(80)
+    assert rough(replace(plan, theta=theta)).value > rough(plan).value + 40
+    assert rough(replace(plan, theta=plan.theta + np.pi)).value == pytest.approx(rough(plan).value)
