@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lce_solver.types import Finding, Floats, Severity
-from lce_workbench.cad.reread import channels_in, solids_in, volume_of
+from lce_workbench.cad.reread import channels_in, solids_in, tally, volume_of
 from lce_workbench.cad.solids import solid
 from lce_workbench.cad.step import CHANNEL_FILES, FILES, stored_as
 from lce_workbench.core.cell import Cell, Prism
@@ -30,6 +30,9 @@ SAME = 1e-9
 READABLE = 20_000
 """Solids of a file that is read back by a kernel; larger files are counted (a million takes minutes to read)."""
 
+HOLES = 200
+"""Holes of a face that is read back by a kernel, whose time grows with their square; larger ones are counted."""
+
 GAUGE = 0.2
 """Half the side of the square that holds the gauge of a cluster [mm]."""
 
@@ -43,9 +46,9 @@ def check(
     ----------
     channels : the channels that were written as solids.
     """
-    shapes = {part.name: solid(part) for part in cell.parts}
+    shapes = {part.name: solid(part) for part in (*cell.parts, *cell.combs)}
     found = [
-        _kernel((*cell.parts, *cell.combs)),
+        _kernel((*cell.parts, *cell.combs), shapes),
         _interference(cell.parts, shapes),
         _gap(shapes, job),
         _marks(cell, frame),
@@ -56,9 +59,9 @@ def check(
     return tuple(found)
 
 
-def _kernel(prisms: Sequence[Prism]) -> Finding:
+def _kernel(prisms: Sequence[Prism], shapes: Mapping[str, cq.Solid]) -> Finding:
     """Volume, centroid and box of every solid against its prism's own, relative to volume and size; and validity."""
-    worst, where = max((_deviation(prism, solid(prism)), prism.name) for prism in prisms)
+    worst, where = max((_deviation(prism, shapes[prism.name]), prism.name) for prism in prisms)
     return judged("cad_kernel", f"{len(prisms)} solids differ from their prisms by up to", worst, SAME, where=where)
 
 
@@ -123,7 +126,9 @@ def _centre(land: Prism, corner: Floats) -> Floats:
 
 def _parts_in(path: Path, prisms: Sequence[Prism]) -> Finding:
     """Number and total volume of the solids that OpenCASCADE finds in a file."""
-    return _compared(path, len(prisms), sum(prism.volume for prism in prisms))
+    if max(len(prism.holes) for prism in prisms) <= HOLES:
+        return _compared(path, len(prisms), sum(prism.volume for prism in prisms))
+    return _counted(path, "solids", tally(path)["solids"], len(prisms))
 
 
 def _channels_in(parts: Iterable[Channels], path: Path, way: str) -> Finding:
@@ -131,9 +136,13 @@ def _channels_in(parts: Iterable[Channels], path: Path, way: str) -> Finding:
     counts, volumes = zip(*((len(part), float(part.areas.sum()) * part.depth) for part in parts), strict=True)
     counted = channels_in(path, way)
     if path.suffix == ".gz" or sum(counts) > READABLE or counted != sum(counts):
-        text = f"{path.name} holds {counted} of {sum(counts)} channels by its text; it lacks"
-        return judged("cad_step", text, abs(sum(counts) - counted), 0.0, where=path.name)
+        return _counted(path, "channels", counted, sum(counts))
     return _compared(path, sum(counts), sum(volumes))
+
+
+def _counted(path: Path, what: str, found: int, want: int) -> Finding:
+    text = f"{path.name} holds {found} of {want} {what} by its text; it lacks"
+    return judged("cad_step", text, abs(want - found), 0.0, where=path.name)
 
 
 def _compared(path: Path, count: int, volume: float) -> Finding:
