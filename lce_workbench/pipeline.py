@@ -6,7 +6,7 @@ import os
 import platform
 import shutil
 import subprocess
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, version
@@ -22,9 +22,9 @@ from lce_solver.shell import film_of, predict, settle
 from lce_solver.types import Design, Finding, Progress, Severity, Status, silent
 from lce_workbench import ROOT, __version__
 from lce_workbench.core import align, jobfile, material, target
-from lce_workbench.core.cell import Cell, assemble
-from lce_workbench.core.channels import ChannelField, empty_domains, hatch
-from lce_workbench.core.domains import PLATES, partition
+from lce_workbench.core.cell import Cell, assemble, select
+from lce_workbench.core.channels import ChannelField, Channels, empty_domains, hatch
+from lce_workbench.core.domains import PLATES, Plate, partition
 from lce_workbench.core.fields import left_out
 from lce_workbench.core.frame import arrange
 from lce_workbench.core.job import Job
@@ -229,16 +229,28 @@ def fabricable(plan: Design) -> Design:
 
 def run_cad(run: Run) -> Findings:
     """Build the cell: `cad/*.step`, `cad/cell.glb`, `cad/cell.FCStd`."""
+    from lce_workbench.cad.checks import check as measure
+    from lce_workbench.cad.instances import estimate
     from lce_workbench.cad.step import write_cad
 
+    job, folder = run.job, run.folder / "cad"
     plan = fabricable(read_design(run.folder / "design.npz"))
-    (run.folder / "cad").mkdir()
-    write_cad(cell_of(plan, run.job), run.folder / "cad", lambda stage, done: run.progress(stage, 0.9 * done))
-    if run.job.output.freecad:
+    folder.mkdir()
+    cell = cell_of(plan, job)
+    fields = {plate: ChannelField(partition(plan), plate, job.channels) for plate in PLATES}
+    solids: dict[Plate, Iterable[Channels]] = dict(fields)
+    if job.output.step == "chosen":
+        solids = {plate: [select(part, cell.chosen) for part in field] for plate, field in fields.items()}
+    expected = estimate(sum(len(part) for parts in solids.values() for part in parts), job.output.step_instances)
+    run.progress(f"cad: {expected.message}", 0.0)
+    write_cad(cell, solids, job, folder, lambda stage, done: run.progress(stage, 0.7 * done))
+    run.progress("cad: checks", 0.7)
+    found = measure(cell, solids, arrange(plan.uv, job), job, folder)
+    if job.output.freecad:
         run.progress("cad/cell.FCStd", 0.9)
         run_freecad("document", run.folder)
     run.progress("cad", 1.0)
-    return ()
+    return (expected, *found)
 
 
 def cell_of(plan: Design, job: Job) -> Cell:

@@ -16,7 +16,7 @@ Nothing here is mirrored: only the master of the top plate is, when its mask is 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -97,6 +97,12 @@ class Prism:
         return self.area * (self.z1 - self.z0)
 
     @property
+    def surface(self) -> float:
+        """Area of all faces [mm2]."""
+        edges = (ring - np.roll(ring, 1, axis=0) for ring in self.rings)
+        return 2 * self.area + (self.z1 - self.z0) * float(sum(np.linalg.norm(e, axis=1).sum() for e in edges))
+
+    @property
     def centroid(self) -> Floats:
         """(3,) centre of mass [mm]."""
         x, y = np.sum([_moments(ring)[1:] for ring in self.rings], axis=0) / self.area
@@ -111,10 +117,14 @@ class Cell:
     """Plates, spacer and film."""
     channels: tuple[Prism, ...]
     """The trenches of the chosen domains as solids, grouped as ``channels_bottom`` and ``channels_top``."""
+    combs: tuple[Prism, ...]
+    """The land of each chosen domain with all its channels, grouped as ``combs_bottom`` and ``combs_top``."""
+    chosen: tuple[int, ...]
+    """The domains whose channels are solids."""
 
     def group(self, name: str) -> tuple[Prism, ...]:
         """The prisms of one assembly."""
-        return tuple(prism for prism in (*self.parts, *self.channels) if prism.group == name)
+        return tuple(prism for prism in (*self.parts, *self.channels, *self.combs) if prism.group == name)
 
 
 def assemble(
@@ -156,7 +166,12 @@ def assemble(
         for k in chosen
         for ring in rings[k]
     ]
-    return Cell((*bottom[::-1], left, right, film, *top), tuple(solids))
+    combs = [
+        _part(f"comb_{k:04d}_{plate}", "land", [domains.corners[k], *rings[k]], _heights(job, plate), f"combs_{plate}")
+        for plate, rings in trenches.items()
+        for k in chosen
+    ]
+    return Cell((*bottom[::-1], left, right, film, *top), tuple(solids), tuple(combs), chosen)
 
 
 def choose(domains: Domains, channels: Mapping[Plate, Channels], wanted: Sequence[int]) -> tuple[int, ...]:
@@ -181,6 +196,12 @@ def choose(domains: Domains, channels: Mapping[Plate, Channels], wanted: Sequenc
     chosen = tuple(sorted(set(wanted)))
     _require_budget(int(counts[:, chosen].sum()))
     return chosen
+
+
+def select(channels: Channels, chosen: Sequence[int]) -> Channels:
+    """The channels of some domains alone."""
+    keep = np.isin(channels.domain, chosen)
+    return replace(channels, centre=channels.centre[keep], length=channels.length[keep], domain=channels.domain[keep])
 
 
 def _require_budget(solids: int) -> None:
@@ -217,13 +238,23 @@ def _part(name: str, kind: str, rings: Sequence[Floats], z: tuple[float, float],
     return Prism(name, rings[0], tuple(rings[1:]), low, high, colour, opacity, group)
 
 
+def _heights(job: Job, plate: Plate) -> tuple[float, float]:
+    """Both faces of a land."""
+    near = job.sheet.thickness / 2
+    return SIDE[plate] * near, SIDE[plate] * (near + job.channels.depth)
+
+
 def _channel_solid(channels: Channels, domain: int, ring: Floats, gap: float) -> Prism:
-    """One trench; the domain's name gives the channels' direction seen from above, in degrees."""
+    """One trench."""
     plate = channels.plate
-    degrees = round(float(np.degrees(channels.angle[domain])), 2) % 180
-    name = f"domain_{domain:04d}_theta_{plate}_{degrees:06.2f}"
     z = SIDE[plate] * gap / 2, SIDE[plate] * (gap / 2 + channels.depth)
-    return _part(name, "channel", [ring], z, f"channels_{plate}")
+    return _part(domain_name(channels, domain), "channel", [ring], z, f"channels_{plate}")
+
+
+def domain_name(channels: Channels, domain: int) -> str:
+    """Name of a domain's channels: its number and their direction seen from above, in degrees."""
+    degrees = round(float(np.degrees(channels.angle[domain])), 2) % 180
+    return f"domain_{domain:04d}_theta_{channels.plate}_{degrees:06.2f}"
 
 
 def _rows(channels: Channels, domain: int) -> slice:

@@ -205,6 +205,18 @@ class Output:
     writer_um: float = param(0.8, "smallest line and land of the laser writer's mode", unit="um", above=0.0, high=100.0)
     freecad: bool = param(True, "write the FreeCAD document cad/cell.FCStd (needs freecadcmd)")
     step_domains: tuple[int, ...] = param((), "domains whose channels become solids; default: the most central")
+    step: str = param(
+        "chosen",
+        "channel solids in cad/channels_*.step: those of step_domains, or all (some 200 MB a plate of 20 mm)",
+        choices=("chosen", "all"),
+    )
+    step_instances: str = param(
+        "mapped",
+        "how channels of one length share a solid: mapped items, or assembly components (3 times larger) for "
+        "programs that lose mapped items",
+        choices=("mapped", "assembly"),
+    )
+    step_gzip: bool = param(False, "compress cad/channels_*.step to .step.gz")
 
 
 @dataclass(frozen=True)

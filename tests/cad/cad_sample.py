@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from lce_solver.types import Floats
-from lce_workbench.core.cell import Cell, assemble
+from lce_workbench.core.cell import Cell, assemble, select
 from lce_workbench.core.channels import Channels, hatch
 from lce_workbench.core.domains import PLATES, Domains, Plate
 from lce_workbench.core.frame import arrange
@@ -50,3 +50,8 @@ def cell(chosen: tuple[int, ...] = (24, 25), gap_um: float = 100.0) -> Cell:
     bottom = np.concatenate([cross(*centre) for centre in frame.marks[:4]])
     top = np.concatenate([bottom, cross(frame.marks[0, 0], 0.0)])
     return assemble(frame, wanted, sheet, {"bottom": bottom, "top": top}, hatched(sheet, wanted))
+
+
+def solids(chosen: tuple[int, ...] = (24, 25)) -> dict[Plate, list[Channels]]:
+    """What `write_cad` takes for the channels of `cell`."""
+    return {plate: [select(channels, chosen)] for plate, channels in hatched(domains(), job()).items()}

@@ -15,10 +15,10 @@ def main(folder: str) -> None:
     built = cell()
     shapes = {f"{i} {p.name}": solid(p) for i, p in enumerate((*built.parts, *built.channels))}
     files = {}
-    for path in sorted(Path(folder).glob("*.step")):
+    for path in sorted(Path(folder).rglob("*.step")):
         shape = Part.Shape()
         shape.read(str(path))
-        files[path.name] = [measured(s) for s in shape.Solids]
+        files[path.relative_to(folder).as_posix()] = [measured(s) for s in shape.Solids]
     prisms = {name: measured(shape) for name, shape in shapes.items()}
     (Path(folder) / "freecad.json").write_text(json.dumps({"prisms": prisms, "files": files}))
 

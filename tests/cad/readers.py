@@ -15,7 +15,7 @@ from OCP.Quantity import Quantity_ColorRGBA, Quantity_TOC_sRGB
 from OCP.STEPCAFControl import STEPCAFControl_Reader
 from OCP.TCollection import TCollection_ExtendedString
 from OCP.TDataStd import TDataStd_Name
-from OCP.TDF import TDF_Label, TDF_LabelSequence
+from OCP.TDF import TDF_AttributeIterator, TDF_Label, TDF_LabelSequence
 from OCP.TDocStd import TDocStd_Document
 from OCP.TopAbs import TopAbs_SOLID
 from OCP.TopExp import TopExp_Explorer
@@ -58,7 +58,7 @@ def _leaves(label: TDF_Label, above: tuple[str, ...]) -> Iterator[tuple[TDF_Labe
         target = TDF_Label()
         XCAFDoc_ShapeTool.GetReferredShape_s(label, target)
         label = target
-    names = (*above, _name(label))
+    names = (*above, *_name(label))
     parts = TDF_LabelSequence()
     XCAFDoc_ShapeTool.GetComponents_s(label, parts)
     if not XCAFDoc_ShapeTool.IsAssembly_s(label):
@@ -67,10 +67,14 @@ def _leaves(label: TDF_Label, above: tuple[str, ...]) -> Iterator[tuple[TDF_Labe
         yield from _leaves(part, names)
 
 
-def _name(label: TDF_Label) -> str:
-    name = TDataStd_Name()
-    assert label.FindAttribute(TDataStd_Name.GetID_s(), name)
-    return name.Get().ToExtString()
+def _name(label: TDF_Label) -> tuple[str, ...]:
+    """The label's name, if it has one: the solids that a mapped item places have none."""
+    iterator = TDF_AttributeIterator(label)
+    while iterator.More():
+        if isinstance(iterator.Value(), TDataStd_Name):
+            return (iterator.Value().Get().ToExtString(),)
+        iterator.Next()
+    return ()
 
 
 def _solids(shape: TopoDS_Shape) -> Iterator[TopoDS_Shape]:

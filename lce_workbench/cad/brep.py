@@ -1,0 +1,111 @@
+"""A prism as a boundary representation of STEP, written as it stands: no kernel, and no cost that grows with its holes.
+
+The shell of a prism is known beforehand: a wall for each edge of a ring, and two caps whose bounds are the rings.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lce_solver.types import Floats, Ints
+from lce_workbench.cad.part21 import Part21, real
+from lce_workbench.core.cell import Prism
+
+CORNER = """\
+@0=CARTESIAN_POINT('',({x:%s},{y:%s},{z0}));
+@1=CARTESIAN_POINT('',({x:%s},{y:%s},{z1}));
+@2=VERTEX_POINT('',@0);
+@3=VERTEX_POINT('',@1);
+@4=DIRECTION('',({dx:%s},{dy:%s},0.));
+@5=VECTOR('',@4,1.);
+@6=LINE('',@0,@5);
+@7=LINE('',@1,@5);
+@8=LINE('',@0,#14);
+@9=EDGE_CURVE('',@2,>2,@6,.T.);
+@10=EDGE_CURVE('',@3,>3,@7,.T.);
+@11=EDGE_CURVE('',@2,@3,@8,.T.);
+@12=ORIENTED_EDGE('',*,*,@9,.T.);
+@13=ORIENTED_EDGE('',*,*,>11,.T.);
+@14=ORIENTED_EDGE('',*,*,@10,.F.);
+@15=ORIENTED_EDGE('',*,*,@11,.F.);
+@16=EDGE_LOOP('',(@12,@13,@14,@15));
+@17=FACE_OUTER_BOUND('',@16,.T.);
+@18=DIRECTION('',({dy:%s},{minus_dx:%s},0.));
+@19=AXIS2_PLACEMENT_3D('',@0,@18,@4);
+@20=PLANE('',@19);
+@21=ADVANCED_FACE('',(@17),@20,.T.);
+@22=ORIENTED_EDGE('',*,*,@9,.F.);
+@23=ORIENTED_EDGE('',*,*,@10,.T.);
+"""
+"""A corner, the edges from it to the next one (``>``) of its ring and upwards, and the wall over the first of them.
+
+With the material on an edge's left, for outlines and holes alike, the wall's outward normal is (dy, -dx).
+"""
+
+SIZE = CORNER.count("\n")
+FACE, LOW, HIGH = 21, 22, 23
+"""Statements of a corner: its wall, and its edges as the lower and upper cap use them."""
+
+CAP = """\
+@0=CARTESIAN_POINT('',(0.,0.,{z}));
+@1=AXIS2_PLACEMENT_3D('',@0,#11,#12);
+@2=PLANE('',@1);
+@3=ADVANCED_FACE('',({bounds}),@2,.{sense}.);
+"""
+
+SOLID = """\
+@0=CLOSED_SHELL('',({faces}));
+@1=MANIFOLD_SOLID_BREP('{name}',@0);
+"""
+
+
+def write_solid(out: Part21, prism: Prism) -> int:
+    """Write the prism; return the number of its MANIFOLD_SOLID_BREP."""
+    points = np.concatenate(prism.rings)
+    following = _following(prism)
+    along = points[following] - points
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    n = len(points)
+    columns = {
+        **{name: _reals(values) for name, values in zip("xy", points.T, strict=True)},
+        **{name: _reals(values) for name, values in zip(("dx", "dy"), along.T, strict=True)},
+        "minus_dx": _reals(-along[:, 0]),
+        "z0": real(prism.z0),
+        "z1": real(prism.z1),
+        ">": following,
+    }
+    first = out.rows(CORNER, n, columns)
+    caps = (_cap(out, prism, first + LOW, -1), _cap(out, prism, first + HIGH, 1))
+    faces = [first + FACE + SIZE * i for i in range(n)]
+    return out.add(SOLID, name=prism.name, faces=_refs([*faces, *caps])) + 1
+
+
+def _following(prism: Prism) -> Ints:
+    """(n,) index of the corner after each corner of the rings, laid end to end."""
+    ends = np.cumsum([len(ring) for ring in prism.rings])
+    following = np.arange(1, ends[-1] + 1)
+    following[ends - 1] = [0, *ends[:-1]]
+    return following
+
+
+def _cap(out: Part21, prism: Prism, first: int, side: int) -> int:
+    """Write the lower (``side`` -1) or upper (+1) face, whose first edge is statement ``first``; return its number."""
+    bounds, start = [], first
+    for i, ring in enumerate(prism.rings):
+        edges = [start + SIZE * k for k in range(len(ring))][::side]
+        kind = "FACE_BOUND" if i else "FACE_OUTER_BOUND"
+        bounds.append(
+            out.add("@0=EDGE_LOOP('',({edges}));\n@1={kind}('',@0,.T.);\n", edges=_refs(edges), kind=kind) + 1
+        )
+        start += SIZE * len(ring)
+    z, sense = (real(prism.z1), "T") if side > 0 else (real(prism.z0), "F")
+    return out.add(CAP, z=z, bounds=_refs(bounds), sense=sense) + 3
+
+
+def _refs(numbers: list[int]) -> str:
+    return ",".join(f"#{number}" for number in numbers)
+
+
+def _reals(values: Floats) -> NDArray[np.object_]:
+    return np.array([real(value) for value in values.tolist()], dtype=object)

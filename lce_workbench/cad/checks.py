@@ -1,0 +1,160 @@
+"""What is measured on the solids and on the written files, as findings of the cad stage."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import combinations
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lce_solver.types import Finding, Floats, Severity
+from lce_workbench.cad.reread import channels_in, solids_in, tally, volume_of
+from lce_workbench.cad.solids import solid
+from lce_workbench.cad.step import CHANNEL_FILES, FILES, stored_as
+from lce_workbench.core.cell import Cell, Prism
+from lce_workbench.core.channels import Channels
+from lce_workbench.core.domains import PLATES, Plate
+from lce_workbench.core.frame import Frame
+from lce_workbench.core.job import Job
+from lce_workbench.core.marks import MARKS
+from lce_workbench.core.units import NM, UM
+
+if TYPE_CHECKING:
+    import cadquery as cq
+
+SAME = 1e-9
+"""Relative difference at which two kernels, or a file and the design, agree."""
+
+READABLE = 20_000
+"""Solids of a file that is read back by a kernel; larger files are counted (a million takes minutes to read)."""
+
+HOLES = 200
+"""Holes of a face that is read back by a kernel, whose time grows with their square; larger ones are counted."""
+
+GAUGE = 0.2
+"""Half the side of the square that holds the gauge of a cluster [mm]."""
+
+
+def check(
+    cell: Cell, channels: Mapping[Plate, Iterable[Channels]], frame: Frame, job: Job, folder: Path
+) -> tuple[Finding, ...]:
+    """Measure the cell and the STEP files in ``folder``.
+
+    Parameters
+    ----------
+    channels : the channels that were written as solids.
+    """
+    shapes = {part.name: solid(part) for part in (*cell.parts, *cell.combs)}
+    found = [
+        _kernel((*cell.parts, *cell.combs), shapes),
+        _interference(cell.parts, shapes),
+        _gap(shapes, job),
+        _marks(cell, frame),
+        *(_parts_in(folder / name, pick(cell)) for name, pick in FILES.items() if name.endswith(".step")),
+    ]
+    for name, plate in CHANNEL_FILES.items():
+        found.append(_channels_in(channels[plate], folder / stored_as(name, job), job.output.step_instances))
+    return tuple(found)
+
+
+def _kernel(prisms: Sequence[Prism], shapes: Mapping[str, cq.Solid]) -> Finding:
+    """Volume, centroid and box of every solid against its prism's own, relative to volume and size; and validity."""
+    worst, where = max((_deviation(prism, shapes[prism.name]), prism.name) for prism in prisms)
+    return judged("cad_kernel", f"{len(prisms)} solids differ from their prisms by up to", worst, SAME, where=where)
+
+
+def _deviation(prism: Prism, shape: cq.Solid) -> float:
+    """Largest relative difference; infinite if the solid is not valid."""
+    box, centre = shape.BoundingBox(), shape.Center()
+    low, high = prism.outline.min(axis=0), prism.outline.max(axis=0)
+    size = float(max(high - low))
+    want = np.array([*low, prism.z0, *high, prism.z1, *prism.centroid])
+    have = np.array([box.xmin, box.ymin, box.zmin, box.xmax, box.ymax, box.zmax, centre.x, centre.y, centre.z])
+    off = max(float(np.abs(have - want).max()) / size, abs(shape.Volume() / prism.volume - 1))
+    return off if shape.isValid() else float("inf")
+
+
+def _interference(parts: Sequence[Prism], shapes: Mapping[str, cq.Solid]) -> Finding:
+    """The largest volume that two parts share [mm3]."""
+    shared = [
+        (shapes[a.name].intersect(shapes[b.name]).Volume(), f"{a.name} and {b.name}")
+        for a, b in combinations(parts, 2)
+        if min(a.z1, b.z1) - max(a.z0, b.z0) > NM and _boxes_meet(a, b)
+    ]
+    worst, where = max(shared, default=(0.0, ""))
+    return judged("cad_interference", "the volume that two parts share is up to", worst, 0.0, unit="mm3", where=where)
+
+
+def _boxes_meet(a: Prism, b: Prism) -> bool:
+    low = np.maximum(a.outline.min(axis=0), b.outline.min(axis=0))
+    high = np.minimum(a.outline.max(axis=0), b.outline.max(axis=0))
+    return bool(np.all(high - low > 0))
+
+
+def _gap(shapes: Mapping[str, cq.Solid], job: Job) -> Finding:
+    """Between the epoxy faces, measured on the solids, against the spacer."""
+    gap = shapes["top_land"].BoundingBox().zmin - shapes["bottom_land"].BoundingBox().zmax
+    text = f"the gap between the epoxy faces is {gap / UM:.6f} um; from the spacer it differs by"
+    return judged("cad_gap", text, abs(gap - job.sheet.thickness) / NM, 1.0, unit="nm")
+
+
+def _marks(cell: Cell, frame: Frame) -> Finding:
+    """Distance of the centres of both halves of the gauge, in each corner."""
+    lands = {part.name: part for part in cell.parts}
+    at = frame.marks + np.array(MARKS["gauge"].at) * UM
+    centres = [np.array([_centre(lands[f"{plate}_land"], corner) for corner in at]) for plate in PLATES]
+    off = np.linalg.norm(centres[1] - centres[0], axis=1)
+    corner = int(np.argmax(off))
+    return judged(
+        "cad_marks",
+        "the gauges of both plates are apart by up to",
+        float(off[corner] / NM),
+        1.0,
+        unit="nm",
+        where=f"corner {corner}",
+    )
+
+
+def _centre(land: Prism, corner: Floats) -> Floats:
+    """Centre of the box of the recesses around a point; far away if there are none."""
+    near = [ring for ring in land.holes if np.all(np.abs(ring - corner) < GAUGE)]
+    points = np.concatenate(near) if near else np.full((1, 2), 1e3 * (land.z0 + 1))
+    return np.asarray((points.min(axis=0) + points.max(axis=0)) / 2)
+
+
+def _parts_in(path: Path, prisms: Sequence[Prism]) -> Finding:
+    """Number and total volume of the solids that OpenCASCADE finds in a file."""
+    if max(len(prism.holes) for prism in prisms) <= HOLES:
+        return _compared(path, len(prisms), sum(prism.volume for prism in prisms))
+    return _counted(path, "solids", tally(path)["solids"], len(prisms))
+
+
+def _channels_in(parts: Iterable[Channels], path: Path, way: str) -> Finding:
+    """The channels of a file: their number and, where a kernel reads them, their volume: written area x depth."""
+    counts, volumes = zip(*((len(part), float(part.areas.sum()) * part.depth) for part in parts), strict=True)
+    counted = channels_in(path, way)
+    if path.suffix == ".gz" or sum(counts) > READABLE or counted != sum(counts):
+        return _counted(path, "channels", counted, sum(counts))
+    return _compared(path, sum(counts), sum(volumes))
+
+
+def _counted(path: Path, what: str, found: int, want: int) -> Finding:
+    text = f"{path.name} holds {found} of {want} {what} by its text; it lacks"
+    return judged("cad_step", text, abs(want - found), 0.0, where=path.name)
+
+
+def _compared(path: Path, count: int, volume: float) -> Finding:
+    shapes = solids_in(path)
+    text = f"{path.name} is read back as {len(shapes)} of {count} solids; their volume differs relatively by"
+    off = abs(sum(map(volume_of, shapes)) / volume - 1) if len(shapes) == count else float("inf")
+    return judged("cad_step", text, off, SAME, where=path.name)
+
+
+def judged(check: str, text: str, value: float, limit: float, *, unit: str = "", where: str = "") -> Finding:
+    """A finding, an error when ``value`` exceeds ``limit``."""
+    severity = Severity.INFO if value <= limit else Severity.ERROR
+    return Finding(
+        check, severity, f"{text} {value:.3g} {unit}".rstrip() + f" (limit {limit:g})", value, limit, unit, where
+    )
