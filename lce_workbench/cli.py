@@ -9,9 +9,10 @@ import sys
 import time
 import traceback
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn
 
 from lce_solver.errors import InputError, LceError
 from lce_solver.surface import load
@@ -46,7 +47,8 @@ def _command(argv: list[str]) -> int:
 def guarded(command: Callable[[list[str]], int], argv: list[str]) -> int:
     """Run ``command`` and turn whatever it raises into one sentence and an exit code."""
     debug = "--debug" in argv
-    signal.signal(signal.SIGTERM, _interrupt)
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _interrupt)
     try:
         return command(argv)
     except LceError as fault:
@@ -80,7 +82,12 @@ def _parser() -> Parser:
         "--json", action="store_true", default=argparse.SUPPRESS, help="progress as JSON lines on stdout"
     )
     common.add_argument("--debug", action="store_true", default=argparse.SUPPRESS, help="show the traceback of a fault")
-    parser = Parser(prog="lce", description="Molds for liquid-crystal-elastomer sheets.", parents=[common])
+    parser = Parser(
+        prog="lce",
+        description="Molds for liquid-crystal-elastomer sheets.",
+        epilog="./lce gui starts FreeCAD with the workbench, ./lce test runs the test suite.",
+        parents=[common],
+    )
     parser.add_argument("--version", action="version", version=f"lce {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND", parser_class=Parser)
 
@@ -198,7 +205,8 @@ def _progress(args: argparse.Namespace) -> tuple[Progress, Callable[[], None]]:
 
 
 def _json_line(stage: str, fraction: float) -> None:
-    print(json.dumps({"stage": stage, "fraction": round(fraction, 4)}), flush=True)
+    with suppress(OSError):  # nobody listens any more: the work goes on
+        print(json.dumps({"stage": stage, "fraction": round(fraction, 4)}), flush=True)
 
 
 class Bar:
@@ -222,12 +230,3 @@ class Bar:
         """Leave the terminal's line clean."""
         if self.terminal:
             print("\r\x1b[K", end="", file=sys.stderr, flush=True)
-
-
-def entry() -> Any:
-    """Start from the shell."""
-    sys.exit(main(sys.argv[1:]))
-
-
-if __name__ == "__main__":
-    entry()

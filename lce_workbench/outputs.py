@@ -24,21 +24,21 @@ MANIFEST = "manifest.json"
 
 
 @contextmanager
-def staged(out: Path, *, keep: Path | None = None) -> Iterator[Path]:
+def staged(out: Path, *, replaced: Sequence[str] | None = None) -> Iterator[Path]:
     """Give a folder beside ``out`` to write into; at the end it takes the place of ``out`` in one rename.
 
-    On any exception the folder is removed and ``out`` is as it was. With ``keep`` the new folder starts with the
-    files of that folder (hard links, so nothing is copied): write anew, never into them.
+    On any exception the folder is removed and ``out`` is as it was. With ``replaced`` the new folder starts with the
+    files of ``out`` (hard links, so nothing is copied) without those files and folders: write these anew.
 
     Raises
     ------
     InputError
-        ``out`` exists and is not an output folder of ours.
+        What would be replaced is not ours, or was changed by hand.
     EnvironmentFault
         The disk is full or may not be written.
     """
-    out = Path(os.path.abspath(out))  # noqa: PTH100 - resolve() would replace a link by its target
-    _refuse_foreign(out)
+    out = Path(os.path.realpath(out))  # a link stays, what it points to is replaced
+    _require_ours(out, replaced)
     made = [parent for parent in out.parents if not parent.exists()]
     with told(out):
         out.parent.mkdir(parents=True, exist_ok=True)
@@ -46,8 +46,10 @@ def staged(out: Path, *, keep: Path | None = None) -> Iterator[Path]:
     try:
         with told(out):
             stage.chmod(0o777 & ~_umask())
-            if keep is not None:
-                shutil.copytree(keep, stage, copy_function=os.link, dirs_exist_ok=True)
+            if replaced is not None:
+                shutil.copytree(out, stage, copy_function=os.link, dirs_exist_ok=True)
+                for name in replaced:
+                    _remove(stage / name)
             yield stage
             _exchange(stage, out)
     finally:
@@ -57,13 +59,31 @@ def staged(out: Path, *, keep: Path | None = None) -> Iterator[Path]:
                 parent.rmdir()
 
 
-def _refuse_foreign(out: Path) -> None:
-    if out.is_dir() and any(out.iterdir()) and not (out / MANIFEST).is_file():
-        msg = f"{out} holds files that are not ours (no {MANIFEST}); choose another folder with --out"
-        raise InputError(msg)
+def _remove(path: Path) -> None:
+    if path.is_dir():
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)
+
+
+def _require_ours(out: Path, replaced: Sequence[str] | None) -> None:
+    """Refuse to replace files that we did not write, or that somebody changed since."""
     if out.exists() and not out.is_dir():
         msg = f"{out} is a file; choose a folder with --out"
         raise InputError(msg)
+    if not out.is_dir() or not any(out.iterdir()):
+        return
+    if not (out / MANIFEST).is_file():
+        msg = f"{out} holds files that are not ours (no {MANIFEST}); choose another folder with --out"
+        raise InputError(msg)
+    ours = {entry["path"]: entry["sha256"] for entry in read_manifest(out)["files"]}
+    for path in sorted(out.rglob("*")):
+        name = path.relative_to(out).as_posix()
+        goes = replaced is None or any(name == part or name.startswith(f"{part}/") for part in replaced)
+        if goes and not path.is_dir() and name != MANIFEST and ours.get(name) != digest(path)["sha256"]:
+            what = "was changed since it was written" if name in ours else "is not ours"
+            msg = f"{path} {what} and would be lost; move it away, or choose another folder with --out"
+            raise InputError(msg)
 
 
 def _umask() -> int:
@@ -81,7 +101,7 @@ def _exchange(stage: Path, out: Path) -> None:
     out.rename(former)
     try:
         stage.rename(out)
-    except OSError:
+    except BaseException:
         former.rename(out)
         raise
     shutil.rmtree(former)
@@ -120,13 +140,32 @@ def read_manifest(folder: Path) -> dict[str, Any]:
         The folder is not one of ours.
     """
     try:
-        manifest: dict[str, Any] = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        msg = (
-            f"{folder} is not an output folder (no readable {MANIFEST}); make one with `./lce design` or `./lce build`"
+        manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+        ours = "lce-molds" in manifest["versions"] and all(
+            isinstance(record, dict) for key in ("files", "findings") for record in manifest[key]
         )
-        raise InputError(msg) from None
-    return manifest
+    except (OSError, ValueError, KeyError, TypeError):
+        ours = False
+    if not ours:
+        msg = f"{folder} is not an output folder (no {MANIFEST} of ours); make one with `./lce design` or `./lce build`"
+        raise InputError(msg)
+    found: dict[str, Any] = manifest
+    return found
+
+
+def require_unchanged(folder: Path, name: str) -> None:
+    """Refuse a file that is not what the manifest says.
+
+    Raises
+    ------
+    InputError
+        It is missing, damaged or changed.
+    """
+    recorded = {entry["path"]: entry["sha256"] for entry in read_manifest(folder)["files"]}
+    path = folder / name
+    if not path.is_file() or recorded.get(name) != digest(path)["sha256"]:
+        msg = f"{path} is missing or not what {MANIFEST} says; run `./lce design` again"
+        raise InputError(msg)
 
 
 def digest(path: Path) -> dict[str, Any]:

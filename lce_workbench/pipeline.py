@@ -6,6 +6,7 @@ import os
 import platform
 import shutil
 import subprocess
+import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -42,6 +43,7 @@ from lce_workbench.outputs import (
     has_error,
     read_design,
     read_manifest,
+    require_unchanged,
     staged,
     write_design,
     write_manifest,
@@ -75,12 +77,13 @@ def build(job: Job, base: Path, out: Path, names: Sequence[str], progress: Progr
     _require_formats(job)
     if "cad" in names and job.output.freecad:
         freecad()
-    former: dict[str, Any] = {} if names[0] == "design" else read_manifest(out)
+    anew = names[0] == "design"
+    former: dict[str, Any] = {} if anew else read_manifest(out)
+    if not anew:
+        require_unchanged(out, "design.npz")
     records = [r for r in former.get("findings", ()) if r["stage"] not in names]
-    with staged(out, keep=out if former else None) as folder:
+    with staged(out, replaced=None if anew else [output for name in names for output in OUTPUTS[name]]) as folder:
         for name in names:
-            for output in OUTPUTS[name]:
-                _remove(folder / output)
             findings = STAGES[name](Run(folder, job, base, progress))
             records += [as_record(finding, name) for finding in findings]
         code = exit_code(records)
@@ -98,6 +101,9 @@ def build(job: Job, base: Path, out: Path, names: Sequence[str], progress: Progr
 
 
 def _require_formats(job: Job) -> None:
+    if not job.output.masks:
+        msg = f"output.masks is empty; name at least one of {', '.join(EXPORTERS)}"
+        raise InputError(msg)
     for name in job.output.masks:
         if name not in EXPORTERS:
             msg = f"output.masks: format {name!r} is unknown; known are {', '.join(EXPORTERS)}"
@@ -141,7 +147,7 @@ def rebased(job: Job, base: Path, folder: Path) -> Job:
     """The job with its file names relative to ``folder``, so that `job.toml` can be built again from there."""
 
     def moved(name: str) -> str:
-        return Path(os.path.relpath(base / name, folder)).as_posix() if name else ""
+        return os.path.relpath(os.path.realpath(base / name), os.path.realpath(folder)) if name else ""
 
     return replace(
         job,
@@ -248,7 +254,7 @@ def run_cad(run: Run) -> Findings:
     found = measure(cell, solids, arrange(plan.uv, job), job, folder)
     if job.output.freecad:
         run.progress("cad/cell.FCStd", 0.9)
-        run_freecad("document", run.folder)
+        run_freecad("document", run.folder, run.folder / "cad" / "cell.FCStd")
     run.progress("cad", 1.0)
     return (expected, *found)
 
@@ -261,8 +267,8 @@ def cell_of(plan: Design, job: Job) -> Cell:
     return assemble(frame, job, domains, drawn, channels)
 
 
-def run_freecad(command: str, folder: Path) -> None:
-    """Run one of our commands inside FreeCAD, in a process of its own.
+def run_freecad(command: str, folder: Path, made: Path) -> None:
+    """Run one of our commands inside FreeCAD, in a process of its own, which must make the file ``made``.
 
     Raises
     ------
@@ -270,11 +276,13 @@ def run_freecad(command: str, folder: Path) -> None:
         FreeCAD is missing, or the command failed; its own sentence and exit code are passed on.
     """
     call = [freecad(), str(ROOT / "lce_workbench" / "batch.py"), "--", command, str(folder)]
-    done = subprocess.run(call, capture_output=True, text=True, check=False, env={**os.environ, "LC_ALL": "C.UTF-8"})
-    if done.returncode:
+    with tempfile.TemporaryDirectory() as home:  # where no other addon is found
+        place = {"LC_ALL": "C.UTF-8", "FREECAD_USER_HOME": home}
+        done = subprocess.run(call, capture_output=True, text=True, check=False, env={**os.environ, **place})
+    if done.returncode or not made.is_file():
         said = done.stderr.strip().splitlines() or [f"no message, exit code {done.returncode}"]
         fault = LceError(f"FreeCAD could not write the document: {said[-1].removeprefix('lce: ')}")
-        fault.exit_code = done.returncode
+        fault.exit_code = done.returncode or EnvironmentFault.exit_code
         raise fault
 
 
@@ -303,13 +311,6 @@ STAGES: dict[str, Callable[[Run], Findings]] = {
 
 OUTPUTS = {"design": (), "predict": ("prediction.npz", "prediction.json"), "mask": ("mask",), "cad": ("cad",)}
 """What a stage writes anew in a kept folder."""
-
-
-def _remove(path: Path) -> None:
-    if path.is_dir():
-        shutil.rmtree(path)
-    else:
-        path.unlink(missing_ok=True)
 
 
 def inputs(job: Job, base: Path) -> list[dict[str, Any]]:

@@ -5,6 +5,7 @@ import hashlib
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -34,7 +35,8 @@ size_um = 300.0
 CLUSTERS = sorted(f"mask/cluster_{place.replace(' ', '_')}.png" for place in PLACES)
 CONTRACT = [
     "cad/bottom_plate.step", "cad/cell.FCStd", "cad/cell.glb", "cad/cell.step", "cad/channels_bottom.step",
-    "cad/channels_top.step", "cad/combs_bottom.step", "cad/combs_top.step", "cad/spacer.step", "cad/top_plate.step", "design.npz", "domains.csv", "job.toml",
+    "cad/channels_top.step", "cad/combs_bottom.step", "cad/combs_top.step", "cad/spacer.step",
+    "cad/top_plate.step", "design.npz", "domains.csv", "job.toml",
     "manifest.json", "mask/border.png", "mask/bottom.dxf", "mask/bottom.gds", "mask/bottom.oas", *CLUSTERS,
     "mask/domain.png", "mask/job_sheet.txt", "mask/overlay.png", "mask/overview.png", "mask/readings.csv",
     "mask/top.dxf", "mask/top.gds", "mask/top.oas", "prediction.json", "prediction.npz",
@@ -204,6 +206,31 @@ def test_an_unwritable_output_ends_with_4(capsys, tmp_path, job):
     assert "cannot be written" in sentence
 
 
+@pytest.mark.parametrize("delay", [0.3, 0.6, 1.2])
+def test_ctrl_c_while_the_libraries_load_is_told_too(job, tmp_path, delay):
+    run = subprocess.Popen(
+        [sys.executable, "-m", "lce_workbench", "build", str(job), "--out", str(tmp_path / "out")],
+        stderr=subprocess.PIPE, text=True, env={**os.environ, "PYTHONPATH": ":".join(sys.path)},
+    )  # fmt: skip
+    time.sleep(delay)
+    run.send_signal(signal.SIGINT)
+    _, err = run.communicate(timeout=60)
+    assert run.returncode == 130
+    assert err.strip().splitlines()[-1] == "lce: interrupted; nothing was changed"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_damaged_design_is_refused(capsys, built, tmp_path):
+    for size in (0, 2000):
+        copy = tmp_path / f"copy {size}"
+        shutil.copytree(built, copy)
+        with (copy / "design.npz").open("r+b") as file:
+            file.truncate(size)
+        code, sentence = said(capsys, "mask", copy)
+        assert code == 2
+        assert "design.npz is missing or not what manifest.json says" in sentence
+
+
 def test_a_missing_freecad_is_told_before_the_work_begins(capsys, tmp_path, job, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     code, sentence = said(capsys, "build", job, "--out", tmp_path / "out")
@@ -223,7 +250,7 @@ def test_a_solver_that_is_stopped_early_says_so_and_ends_with_3(tmp_path, job):
 
 def test_an_interrupted_build_leaves_nothing(job, tmp_path):
     run = subprocess.Popen(
-        [sys.executable, "-m", "lce_workbench.cli", "build", str(job), "--json", "--out", str(tmp_path / "out"),
+        [sys.executable, "-m", "lce_workbench", "build", str(job), "--json", "--out", str(tmp_path / "out"),
          "--set", "domains.size_um=100"],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env={**os.environ, "PYTHONPATH": ":".join(sys.path)},
     )  # fmt: skip

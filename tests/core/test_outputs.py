@@ -3,14 +3,15 @@
 import pytest
 
 from lce_solver.errors import EnvironmentFault, InputError
-from lce_workbench.outputs import MANIFEST, read_manifest, staged, write_manifest
+from lce_workbench.outputs import MANIFEST, read_manifest, require_unchanged, staged, write_manifest
+
+OURS = {"versions": {"lce-molds": "0"}, "findings": []}
 
 
-def make(out, text="one", keep=None):
-    with staged(out, keep=keep) as folder:
-        (folder / "a.txt").unlink(missing_ok=True)
+def make(out, text="one", replaced=None):
+    with staged(out, replaced=replaced) as folder:
         (folder / "a.txt").write_text(text)
-        write_manifest(folder, {})
+        write_manifest(folder, OURS)
 
 
 def test_a_finished_folder_replaces_the_former_one(tmp_path):
@@ -35,14 +36,58 @@ def test_a_broken_run_leaves_what_was_there(tmp_path, fault, exists):
 def test_kept_files_are_kept_and_the_former_folder_is_not_touched_through_them(tmp_path):
     make(tmp_path / "out")
     (tmp_path / "out" / "b.txt").write_text("kept")
-    with pytest.raises(RuntimeError), staged(tmp_path / "out", keep=tmp_path / "out") as folder:
-        (folder / "a.txt").unlink()
+    with pytest.raises(RuntimeError), staged(tmp_path / "out", replaced=["a.txt"]) as folder:
         (folder / "a.txt").write_text("new")
-        write_manifest(folder, {})
+        write_manifest(folder, OURS)
         raise RuntimeError
     assert (tmp_path / "out" / "a.txt").read_text() == "one"
-    make(tmp_path / "out", "two", keep=tmp_path / "out")
+    make(tmp_path / "out", "two", replaced=["a.txt"])
+    assert (tmp_path / "out" / "a.txt").read_text() == "two"
     assert (tmp_path / "out" / "b.txt").read_text() == "kept"
+
+
+def test_what_was_added_or_changed_by_hand_is_never_lost(tmp_path):
+    out = tmp_path / "out"
+    make(out)
+    (out / "notes.txt").write_text("mine")
+    with pytest.raises(InputError, match=r"notes\.txt is not ours and would be lost"):
+        make(out, "two")
+    (out / "notes.txt").unlink()
+    (out / "a.txt").write_text("edited")
+    for replaced in (None, ["a.txt"]):
+        with pytest.raises(InputError, match=r"a\.txt was changed since it was written and would be lost"):
+            make(out, "two", replaced)
+    assert (out / "a.txt").read_text() == "edited"
+    make(out / "sub", "one")
+    assert sorted(p.name for p in out.iterdir()) == ["a.txt", MANIFEST, "sub"]
+
+
+def test_a_manifest_of_somebody_else_does_not_make_the_folder_ours(tmp_path):
+    (tmp_path / MANIFEST).write_text('{"name": "my web app"}')
+    (tmp_path / "index.html").write_text("precious")
+    with pytest.raises(InputError, match="not an output folder"):
+        make(tmp_path)
+    assert (tmp_path / "index.html").read_text() == "precious"
+
+
+@pytest.mark.parametrize("exists", [False, True])
+def test_a_link_stays_a_link(tmp_path, exists):
+    if exists:
+        make(tmp_path / "real")
+    (tmp_path / "link").symlink_to(tmp_path / "real")
+    make(tmp_path / "link", "two")
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "real" / "a.txt").read_text() == "two"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["link", "real"]
+
+
+def test_a_file_that_the_manifest_does_not_know_is_refused(tmp_path):
+    make(tmp_path / "out")
+    require_unchanged(tmp_path / "out", "a.txt")
+    (tmp_path / "out" / "a.txt").write_text("onf")
+    for name in ("a.txt", "none.txt"):
+        with pytest.raises(InputError, match="missing or not what"):
+            require_unchanged(tmp_path / "out", name)
 
 
 def test_files_of_others_are_never_replaced(tmp_path):
@@ -67,9 +112,10 @@ def test_the_manifest_lists_every_file_with_its_digest(tmp_path):
 def test_a_folder_without_manifest_is_told(tmp_path):
     with pytest.raises(InputError, match="not an output folder"):
         read_manifest(tmp_path)
-    (tmp_path / MANIFEST).write_text("{")
-    with pytest.raises(InputError, match="not an output folder"):
-        read_manifest(tmp_path)
+    for text in ("{", "[]", '{"findings": [1]}', '{"versions": {"lce-molds": "1"}, "files": [], "findings": [1]}'):
+        (tmp_path / MANIFEST).write_text(text)
+        with pytest.raises(InputError, match="not an output folder"):
+            read_manifest(tmp_path)
 
 
 def test_a_place_that_cannot_be_written_is_told(tmp_path):
@@ -82,7 +128,7 @@ def test_a_full_disk_is_told_and_loses_nothing(tmp_path):
     """/dev/full gives the kernel's own answer to a write on a full disk, without a mount, which a chroot forbids."""
     out = tmp_path / "out"
     make(out)
-    with pytest.raises(EnvironmentFault, match="the disk is full") as fault, staged(out, keep=out) as folder:
+    with pytest.raises(EnvironmentFault, match="the disk is full") as fault, staged(out, replaced=[]) as folder:
         (folder / "big").symlink_to("/dev/full")
         (folder / "big").write_bytes(bytes(4_000_000))
     assert fault.value.exit_code == 4
