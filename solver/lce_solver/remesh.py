@@ -6,6 +6,11 @@ vertex on the input: inner ones on its triangles, those of the rim on its rim. B
 
 from __future__ import annotations
 
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import igl
 import numpy as np
 from mmgpy import MmgMeshS
@@ -138,11 +143,24 @@ def _mmg(surface: Surface, size: float, fixed: Ints) -> Surface:
     try:
         # angle: no ridges, which noise would be taken for; nosizreq: required vertices do not set the size around them;
         # hausd: the size alone rules, not the curvature.
-        mesh.remesh(hsiz=float(size), hausd=1.0, angle=0, nosizreq=True, verbose=-1)
+        with _signals_kept():
+            mesh.remesh(hsiz=float(size), hausd=1.0, angle=0, nosizreq=True, verbose=-1)
     except RuntimeError as fault:
         msg = f"the remesher gave up ({fault}); repair the mesh in a mesh editor or keep the input's triangles"
         raise SolverError(msg) from fault
     return Surface(mesh.get_vertices(), mesh.get_triangles().astype(np.int64))
+
+
+@contextmanager
+def _signals_kept() -> Iterator[None]:
+    """Put the signal handlers back: MMG sets its own and leaves the default ones, with which Ctrl-C kills at once."""
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        if threading.current_thread() is threading.main_thread():  # no other may set them
+            for number, handler in handlers.items():
+                signal.signal(number, handler)
 
 
 def _on(target: Surface, loops: list[Ints], found: Surface) -> Surface:

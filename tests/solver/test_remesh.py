@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import signal
+
 import numpy as np
 import pytest
 import trimesh
@@ -238,3 +240,9 @@ def test_a_neck_thinner_than_the_edge_is_refused_or_kept():
         assert "holes and necks" in str(fault)  # noqa: PT017 - either outcome is right
     else:
         assert (len(boundary_loops(found.faces)), euler(found.faces)) == (2, 0)
+
+
+def test_ctrl_c_is_still_caught_after_remeshing():
+    remesh(square(10), 0.2)
+    with pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)
