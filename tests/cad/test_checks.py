@@ -11,7 +11,7 @@ from lce_workbench.cad.checks import check
 from lce_workbench.cad.step import write_cad
 from lce_workbench.core.cell import assemble, select
 from lce_workbench.core.frame import arrange
-from lce_workbench.core.marks import MARKS, cross, windows
+from lce_workbench.core.marks import MARKS, Wanted, cross, windows
 from lce_workbench.core.marks import moved as moved_mark
 
 
@@ -23,7 +23,7 @@ def made(tmp_path_factory):
     channels = hatched(sheet, wanted)
     at = MARKS["gauge"].at
     drawn = {
-        plate: np.concatenate([moved_mark(draw(wanted.marks), *at) + corner for corner in frame.marks])
+        plate: np.concatenate([moved_mark(draw(Wanted(wanted.marks)), *at) + corner for corner in frame.marks])
         for plate, draw in (("bottom", windows), ("top", cross))
     }
     cell = assemble(frame, wanted, sheet, drawn, channels)
