@@ -74,7 +74,8 @@ def test_marks_two_nanometres_apart_are_seen(made, unread):
 
 
 def test_parts_that_share_volume_are_seen(made, unread):
-    cell = moved(made[0], "spacer_left", (5.0, 0.0))
+    part = {p.name: p.outline[:, 0] for p in made[0].parts}
+    cell = moved(made[0], "spacer_left", (part["sheet"].min() - part["spacer_left"].max() + 0.05, 0.0))
     assert errors(made, cell=cell) == {"cad_interference spacer_left and sheet"}
 
 
