@@ -12,13 +12,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lce_solver.compare import Comparison
 from lce_solver.errors import EnvironmentFault, InputError
 from lce_solver.types import Design, Finding, Flattening, Ints, Material, Prediction, Severity, Status, Surface
+
+if TYPE_CHECKING:  # it imports SciPy, which the Python inside FreeCAD may lack
+    from lce_solver.compare import Comparison
 
 MANIFEST = "manifest.json"
 

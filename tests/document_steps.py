@@ -160,8 +160,16 @@ def looks(path, picture):
             "colour": getattr(view, "ShapeColor", None),
             "transparency": getattr(view, "Transparency", None),
             "proxy": type(getattr(view, "Proxy", None)).__name__,
+            "shine": shine(view),
         }
     return found
+
+
+def shine(view):
+    """Specular colour of a body; `None` for what has no material."""
+    if "ShapeAppearance" in view.PropertiesList:
+        return view.ShapeAppearance[0].SpecularColor[:3]
+    return view.ShapeMaterial.SpecularColor[:3] if "ShapeMaterial" in view.PropertiesList else None
 
 
 def looks_and_edit(path, picture, changes, save_as, other, other_picture):

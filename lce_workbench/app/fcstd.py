@@ -24,6 +24,9 @@ EPOCH = (1980, 1, 1, 0, 0, 0)
 DISPLAY_MODES = ("Flat Lines", "Shaded")
 """The first display modes of a Part view provider, in FreeCAD's order."""
 
+AMBIENT = 0x33333300
+"""What a body returns of the light from all sides, packed as red, green, blue, nothing."""
+
 
 @dataclass(frozen=True)
 class Look:
@@ -104,8 +107,13 @@ def _surface(look: Look) -> list[str]:
     red, green, blue = (round(255 * part) for part in look.colour or (0, 0, 0))
     mode = DISPLAY_MODES.index("Flat Lines" if look.edges else "Shaded")
     rgba = red << 24 | green << 16 | blue << 8
+    # The whole material and not its colour alone: FreeCAD 1.0's own shines, and what faces the eye is white.
+    material = (
+        f'<PropertyMaterial ambientColor="{AMBIENT}" diffuseColor="{rgba}" specularColor="0" emissiveColor="0" '
+        f'shininess="0.2" transparency="{look.transparency / 100}"/>'
+    )
     return [
-        _property("ShapeColor", "App::PropertyColor", f'<PropertyColor value="{rgba}"/>'),
+        _property("ShapeMaterial", "App::PropertyMaterial", material),
         _property("Transparency", "App::PropertyPercent", f'<Integer value="{look.transparency}"/>'),
         _property("DisplayMode", "App::PropertyEnumeration", f'<Integer value="{mode}"/>'),
     ]

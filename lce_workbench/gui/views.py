@@ -17,6 +17,7 @@ class View:
         obj = vobj.Object
         if "Colour" in obj.PropertiesList:
             vobj.ShapeColor, vobj.Transparency = obj.Colour, obj.Transparency
+            _make_matte(vobj)
             vobj.DisplayMode = "Shaded" if is_fine(obj.Shape) else "Flat Lines"
         for container in obj.InListRecursive:
             if "Group" in container.PropertiesList:
@@ -33,3 +34,11 @@ class View:
 
     __getstate__ = dumps  # FreeCAD 0.20
     __setstate__ = loads
+
+
+def _make_matte(vobj: Any) -> None:
+    """Take away the shine that FreeCAD 1.0 gives to every body: in it, what faces the eye is white."""
+    if "ShapeAppearance" in vobj.PropertiesList:
+        material = vobj.ShapeAppearance[0]
+        material.SpecularColor = (0.0, 0.0, 0.0)
+        vobj.ShapeAppearance = (material,)
