@@ -14,8 +14,8 @@ with staged(out) as folder:
     (folder / "channels_bottom.step").write_text("former")
     write_manifest(folder, {})
 try:
-    with staged(out, keep=out) as folder:
-        (folder / "channels_bottom.step").unlink()
+    with staged(out) as folder:
+        (folder / "channels_bottom.step").unlink(missing_ok=True)
         step.write_cad(None, {plate: [part] for plate, part in hatched(domains(), job()).items()}, job(), folder)
 except EnvironmentFault as fault:
     names = [p.name for p in out.parent.iterdir()]
