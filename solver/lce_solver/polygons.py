@@ -54,7 +54,7 @@ def triangulated(vertices: Floats, polygons: Sequence[Sequence[int]]) -> Ints:
 
 def _starts(vertices: Floats, corners: Ints) -> tuple[Ints, NDArray[np.bool_]]:
     """(m,) corner to split (m, size) polygons from, and whether there is one; what cannot be judged passes."""
-    known: NDArray[np.bool_] = np.asarray((corners >= 0) & (corners < len(vertices))).all(axis=1)
+    known: NDArray[np.bool_] = np.all((corners >= 0) & (corners < len(vertices)), axis=1)
     points = vertices[np.where(known[:, None], corners, 0)]
     inside = np.zeros(corners.shape, dtype=bool)
     with np.errstate(all="ignore"):  # coordinates that overflow are refused later, with their vertex
