@@ -26,6 +26,17 @@ BAD_JOBS = {
         "is not smaller than",
     ),
     "domain smaller than a channel": (FACE + "[domains]\nsize_um = 3\n", "holds hardly a channel"),
+    "channel deeper than its epoxy": (
+        FACE + "[channels]\ndepth_um = 50\n",
+        "job.toml: channels.depth_um = 50 is not smaller than the epoxy layer that holds them (plates.epoxy_um = 50)",
+    ),
+    "channel deeper than the film": (
+        FACE + "[channels]\ndepth_um = 6\n[sheet]\ngap_um = 5\n",
+        "raise sheet.gap_um",
+    ),
+    "400 digits": (FACE + f"[sheet]\nwidth_mm = {'9' * 400}\n", "sheet.width_mm is inf; give a finite number"),
+    "400 digits of a count": (FACE + f"[solver]\nstarts = {'9' * 400}\n", "solver.starts is inf; give a finite number"),
+    "5000 digits": (FACE + f"[sheet]\nwidth_mm = {'9' * 5000}\n", "is not valid TOML"),
     "no target": ("[sheet]\nwidth_mm = 20\n", "give either target.mesh"),
     "two targets": ('[target]\nsurface = "face"\nmesh = "a.stl"\n', "give either target.mesh"),
     "unknown choice": ('[target]\nmesh = "a.stl"\nsubdivision = "cubic"\n', "choose one of loop, midpoint"),

@@ -30,7 +30,7 @@ def load(path: Path, settings: Iterable[str] = ()) -> Job:
         The file is missing, unreadable or not TOML, or a key or value is wrong.
     """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")
     except FileNotFoundError:
         msg = f"job file {path} does not exist; `./lce new TARGET` writes one"
         raise InputError(msg) from None
@@ -44,12 +44,12 @@ def parse(text: str, name: str = "job", settings: Iterable[str] = ()) -> Job:
     """Turn TOML text into a checked `Job`; ``name`` is used in messages."""
     try:
         table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as fault:
+    except ValueError as fault:  # not only TOMLDecodeError: Python refuses integers of thousands of digits
         msg = f"{name} is not valid TOML: {fault}"
         raise InputError(msg) from None
     for setting in settings:
         _apply(table, setting)
-    return _consistent(from_table(table, name))
+    return _consistent(from_table(table, name), name)
 
 
 def from_table(table: Mapping[str, Any], name: str = "job") -> Job:
@@ -95,12 +95,20 @@ def _checked(value: Any, hint: Any, f: Field[Any], label: str) -> Any:
     if str(kind).startswith("tuple"):
         return _checked_list(value, get_args(kind)[0], label)
     if kind is float and type(value) is int:
-        value = float(value)
+        value = _as_float(value)
     if type(value) is not kind:
         msg = f"{label} must be {WORDS[kind]}, not {value!r}"
         raise InputError(msg)
     _within(value, f, label)
     return value
+
+
+def _as_float(value: float) -> float:
+    """The number as a float; too large a one becomes infinite, which is refused with the other infinities."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
 
 
 WORDS = {float: "a number", int: "a whole number", bool: "true or false", str: "a text in quotes"}
@@ -120,6 +128,7 @@ def _within(value: Any, f: Field[Any], label: str) -> None:
         raise InputError(msg)
     if type(value) not in {int, float}:
         return
+    value = _as_float(value)
     if not math.isfinite(value):
         msg = f"{label} is {value}; give a finite number"
         raise InputError(msg)
@@ -148,14 +157,14 @@ def _apply(table: dict[str, Any], setting: str) -> None:
         raise InputError(msg)
     try:
         value = tomllib.loads(f"v = {raw.strip()}")["v"]
-    except tomllib.TOMLDecodeError:
+    except ValueError:
         value = raw.strip()
     part = table.setdefault(section, {})
     if isinstance(part, dict):
         part[name] = value
 
 
-def _consistent(job: Job) -> Job:
+def _consistent(job: Job, name: str) -> Job:
     """Check what no single parameter shows; fill in the default material.
 
     Raises
@@ -163,33 +172,62 @@ def _consistent(job: Job) -> Job:
     InputError
         Parameters contradict each other.
     """
-    target, material, sheet = job.target, job.material, job.sheet
-    if bool(target.mesh) == bool(target.surface):
-        msg = 'give either target.mesh = "file" or target.surface = "face", and not both'
+    fault = next((words for test in CONTRADICTIONS if (words := test(job))), "")
+    if fault:
+        msg = f"{name}: {fault}"
         raise InputError(msg)
-    given = [bool(material.preset), material.lambda_ is not None or material.nu is not None, bool(material.curve)]
+    return job if any(_given(job)) else with_default_material(job)
+
+
+def _given(job: Job) -> list[bool]:
+    """Whether preset, numbers and curve of the material are given."""
+    material = job.material
+    return [bool(material.preset), material.lambda_ is not None or material.nu is not None, bool(material.curve)]
+
+
+def _target_fault(job: Job) -> str:
+    if bool(job.target.mesh) == bool(job.target.surface):
+        return 'give either target.mesh = "file" or target.surface = "face", and not both'
+    return ""
+
+
+def _material_fault(job: Job) -> str:
+    material, given = job.material, _given(job)
     if sum(given) > 1:
-        msg = "the material is given twice; keep one of material.preset, material.lambda with nu, material.curve"
-        raise InputError(msg)
+        return "the material is given twice; keep one of material.preset, material.lambda with nu, material.curve"
     if given[1] and (material.lambda_ is None or material.nu is None):
-        msg = "material.lambda and material.nu belong together; give both (nu = 0.5 conserves volume)"
-        raise InputError(msg)
+        return "material.lambda and material.nu belong together; give both (nu = 0.5 conserves volume)"
     if given[2] != (material.temperature_C is not None):
-        msg = "material.curve and material.temperature_C belong together; give both or neither"
-        raise InputError(msg)
-    if job.domains.size >= sheet.width_mm:
-        msg = (
-            f"domains.size_um = {job.domains.size_um:g} is not smaller than the sheet "
+        return "material.curve and material.temperature_C belong together; give both or neither"
+    return ""
+
+
+def _size_fault(job: Job) -> str:
+    domains, channels, sheet = job.domains, job.channels, job.sheet
+    if domains.size >= sheet.width_mm:
+        return (
+            f"domains.size_um = {domains.size_um:g} is not smaller than the sheet "
             f"(sheet.width_mm = {sheet.width_mm:g}); domains of 200 to 500 um are usual"
         )
-        raise InputError(msg)
-    if job.domains.size < 4 * job.channels.pitch:
-        msg = (
-            f"domains.size_um = {job.domains.size_um:g} holds hardly a channel at a pitch of "
-            f"{job.channels.pitch * 1e3:g} um; make the domains larger or the channels finer"
+    if domains.size < 4 * channels.pitch:
+        return (
+            f"domains.size_um = {domains.size_um:g} holds hardly a channel at a pitch of "
+            f"{channels.pitch * 1e3:g} um; make the domains larger or the channels finer"
         )
-        raise InputError(msg)
-    return job if any(given) else with_default_material(job)
+    for key, layer, size in (
+        ("plates.epoxy_um", "the epoxy layer that holds them", job.plates.epoxy_um),
+        ("sheet.gap_um", "the film that fills them", sheet.gap_um),
+    ):
+        if channels.depth_um >= size:
+            return (
+                f"channels.depth_um = {channels.depth_um:g} is not smaller than {layer} ({key} = {size:g}); "
+                f"make the channels shallower (0.6 um is usual) or raise {key}"
+            )
+    return ""
+
+
+CONTRADICTIONS: tuple[Callable[[Job], str], ...] = (_target_fault, _material_fault, _size_fault)
+"""Each says what is wrong, or nothing."""
 
 
 def with_default_material(job: Job) -> Job:

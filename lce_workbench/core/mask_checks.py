@@ -24,12 +24,6 @@ from lce_workbench.core.units import NM
 ROUNDING = 2.0
 """What rounding two corners to the 1 nm grid can change in a distance, 2 x sqrt(1/2), rounded up [nm]."""
 
-MAX_ANGLE = 1e-3
-"""Largest accepted error of a domain's written direction [degrees]."""
-
-FULL_WEIGHT = 1e6
-"""A domain with less channel than this counts in proportion: 1 nm turns a single short channel visibly [nm]."""
-
 MAX_CORNERS = 4000
 """Corners of a polygon that every reader of GDSII takes."""
 
@@ -118,15 +112,18 @@ def inset(block: Block) -> Measured:
 
 
 def angle_error(block: Block) -> Measured:
-    """Error of each domain's direction on the master, length-weighted as a line field [degrees]."""
+    """Error of each domain's written direction as a sideways shift of its channels' ends, on average [nm].
+
+    Rounding shifts both ends of every channel by up to sqrt(1/2) nm, so it cannot shift their average by more than
+    `ROUNDING`, however long the channels are; the direction is their length-weighted mean as a line field.
+    """
     p = block.written
     along = (p[1] - p[0] + p[2] - p[3]) / 2
     size = _size(along)
-    domain, starts = np.unique(block.domain, return_index=True)
+    domain, starts, number = np.unique(block.domain, return_index=True, return_counts=True)
     mean = np.add.reduceat(along**2 / size, starts)
     error = np.angle(mean * np.exp(-2j * block.direction[domain])) / 2
-    weight = np.minimum(np.add.reduceat(size, starts) / FULL_WEIGHT, 1.0)
-    return np.degrees(np.abs(error)) * weight, domain
+    return np.abs(error) * np.add.reduceat(size, starts) / number, domain
 
 
 CHANNEL_CHECKS: dict[str, Check] = {
@@ -138,7 +135,9 @@ CHANNEL_CHECKS: dict[str, Check] = {
     "channel_inset": Check(
         inset, lambda spec: spec.guard / NM - ROUNDING, True, "nm", "smallest distance from a channel to its border"
     ),
-    "channel_angle": Check(angle_error, lambda _: MAX_ANGLE, False, "deg", "largest error of a domain's direction"),
+    "channel_angle": Check(
+        angle_error, lambda _: ROUNDING, False, "nm", "largest error of a domain's direction, at its channels' ends"
+    ),
 }
 """Measured on every channel. Lands between channels of different domains are at least two insets wide."""
 

@@ -11,8 +11,12 @@ from lce_solver.types import Design, Finding, Severity, Status, line_angle
 
 RMS_LIMIT = 0.05
 """Largest rms of the relative stretch errors that passes without a warning."""
+RMS_LOST = 0.10
+"""Rms of the relative stretch errors beyond which the sheet takes another shape."""
 TWIST_LIMIT = np.deg2rad(5.0)
 """Largest twist in the paper's models [rad]."""
+QUARTER = np.pi / 2
+"""Plates fix the director modulo pi: from here on the film may take the other, smaller twist [rad]."""
 
 REMEDY = {
     Status.ITERATION_LIMIT: "raise solver.max_iterations or solver.tolerance",
@@ -50,13 +54,14 @@ def stretched(design: Design) -> tuple[Finding, Finding]:
     triangle = int(np.argmax(worst))
     place = _where(design, triangle)
     if rms > RMS_LIMIT:
-        severity, advice = Severity.WARNING, "; refine the target, or choose lambda further from 1"
+        severity = Severity.ERROR if rms > RMS_LOST else Severity.WARNING
+        advice = "; refine the target, or choose lambda further from 1"
     else:
         severity, advice = Severity.INFO, ""
     message = f"the stretches miss the material's by {rms:.2%} rms{advice}"
     peak = f"the worst stretch misses the material's by {worst[triangle]:.2%}"
     return (
-        Finding("stretch_rms", severity, message, value=rms, limit=RMS_LIMIT),
+        Finding("stretch_rms", severity, message, value=rms, limit=RMS_LOST if rms > RMS_LOST else RMS_LIMIT),
         Finding("stretch_max", Severity.INFO, peak, value=float(worst[triangle]), where=place),
     )
 
@@ -73,6 +78,9 @@ def twisted(design: Design) -> Finding:
             "smooth the target there, or make the sheet wider or the film thinner"
         )
     severity = Severity.WARNING if beyond else Severity.INFO
+    if size[triangle] >= QUARTER:
+        severity, limit = Severity.ERROR, 90.0
+        message += "; plates fix the director modulo 180 deg, so from 90 deg on the film takes the other twist"
     return Finding("twist_limit", severity, message, most, limit, unit="deg", where=_where(design, triangle))
 
 

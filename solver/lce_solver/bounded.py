@@ -13,6 +13,8 @@ from lce_solver.types import Design, Finding, Floats, Ints, Severity
 
 COSTLY = 0.05
 """Part of the target's bending from which on what filter and cap take away is a warning."""
+USELESS = 0.5
+"""Part of the bending in reach of twist below which what is left of the twist is of no use."""
 
 
 def bounded_twist(
@@ -79,4 +81,6 @@ def cost(form: Floats, plan: Design, limit: float) -> Finding:
     severe = left - least > COSTLY
     if severe:
         message += "; make the sheet wider or the film thinner, or raise sheet.twist_limit_deg"
+    if 1 - left < USELESS * (1 - least):
+        message += "; so little twist hardly bends the sheet: choose lambda further from 1"
     return Finding("twist_cost", Severity.WARNING if severe else Severity.INFO, message, left - least, COSTLY)

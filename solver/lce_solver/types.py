@@ -64,6 +64,10 @@ class Finding:
     """The place: a domain, an element, a file."""
 
 
+LEAST, MOST = 0.05, 20.0
+"""Limits of a material's stretches: far beyond what any elastomer does, far from where numbers overflow."""
+
+
 @dataclass(frozen=True)
 class Material:
     """Lengths change by ``lambda_`` along the director and ``lambda_**-nu`` across it (paper, eq. 1)."""
@@ -79,6 +83,14 @@ class Material:
             raise InputError(msg)
         if not np.isfinite(self.nu):
             msg = f"material.nu is {self.nu:g}; give a finite number, 0.5 conserves volume"
+            raise InputError(msg)
+        with np.errstate(all="ignore"):  # of what is refused here
+            across = float(np.float64(self.lambda_) ** -self.nu)
+        if not all(LEAST <= stretch <= MOST for stretch in (self.lambda_, across)):
+            msg = (
+                f"material.lambda = {self.lambda_:g} with nu = {self.nu:g} stretches by {self.lambda_:g} along and "
+                f"{across:g} across the director; give values with both stretches between {LEAST:g} and {MOST:g}"
+            )
             raise InputError(msg)
         if self.lambda_ == 1.0 or self.along == self.across:
             msg = (

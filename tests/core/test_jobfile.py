@@ -38,6 +38,17 @@ def test_missing_and_unreadable_files_are_told(tmp_path):
         jobfile.load(tmp_path)
 
 
+def test_a_byte_order_mark_does_not_matter(tmp_path):
+    (tmp_path / "job.toml").write_bytes(b"\xef\xbb\xbf" + FACE.encode())
+    assert jobfile.load(tmp_path / "job.toml") == jobfile.parse(FACE)
+
+
+@pytest.mark.parametrize("text", ["", FACE + "[material]\nlambda = 0.6\n", FACE + "[domains]\nsize_um = 3\n"])
+def test_a_contradiction_names_the_job_file(text):
+    with pytest.raises(InputError, match=r"^my/job\.toml: "):
+        jobfile.parse(text, "my/job.toml")
+
+
 def test_a_dumped_job_reads_back_the_same():
     job = jobfile.parse(
         FACE + '[sheet]\nwidth_mm = 12.345678901234567\n[output]\nstep_domains = [3, 1]\nmasks = ["gds"]\n'

@@ -44,7 +44,7 @@ def test_a_good_mask_passes_and_says_what_was_measured(plate):
     assert 998 <= findings["channel_spacing"].value <= 1000
     assert 499 <= findings["channel_inset"].value < 502
     assert findings["channel_length"].value >= 1998
-    assert findings["channel_angle"].value < 5e-4
+    assert findings["channel_angle"].value < 1.5
     assert 0.96 < findings["channel_area"].value < 1
 
 
@@ -67,10 +67,10 @@ def along(p, i, by):
     p[i] += np.rint(by * side).astype(np.int32)
 
 
-def turn_domain(p):
+def turn_domain(p, degrees=0.002):
     rows = CHANNELS["bottom"].domain == 5
     centre = p[rows].mean(axis=(0, 1))
-    angle = np.radians(0.002)
+    angle = np.radians(degrees)
     rotation = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
     p[rows] = np.rint((p[rows] - centre) @ rotation + centre)
 
@@ -147,6 +147,25 @@ def test_every_channel_check_has_a_fault():
 def test_a_fault_names_its_domain():
     mask = changed(MASKS["bottom"], "CHANNELS", lambda p: along(p, 50, 5000))
     assert found(mask)["channel_inset"].where == f"bottom plate, domain {CHANNELS['bottom'].domain[50]}"
+
+
+@pytest.mark.parametrize("degrees", [-0.01, 0.01])
+def test_a_turn_of_a_hundredth_of_a_degree_is_far_beyond_rounding(degrees):
+    finding = found(changed(MASKS["bottom"], "CHANNELS", lambda p: turn_domain(p, degrees)))["channel_angle"]
+    assert finding.value > 5 * finding.limit
+    assert finding.where == "bottom plate, domain 5"
+
+
+@pytest.mark.parametrize("size", [0.03, 0.1, 0.3])
+@pytest.mark.parametrize("plate", ["bottom", "top"])
+def test_rounding_alone_passes_whatever_the_size_of_the_domains(plate, size):
+    """The limit scales with what 1 nm can do to channels of that length: small domains turn more, and rightly so."""
+    plan = design(16, 16, width=16 * size, height=16 * size)
+    domains = partition(plan)
+    frame, _, masks = both_masks(domains, JOB)
+    findings = check(masks[plate], ChannelField(domains, plate, JOB.channels), frame, JOB)
+    value = next(f for f in findings if f.check == "channel_angle").value
+    assert 0.05 < value < np.sqrt(2)
 
 
 def test_an_overlap_is_a_negative_spacing():

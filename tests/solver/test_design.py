@@ -7,7 +7,7 @@ import pytest
 from targets import LCE, flat, hill, line_difference, mirrored, moved, patch, ramp, renumbered, scaled, turned_over
 
 from lce_solver import judge
-from lce_solver.assess import rough, solved
+from lce_solver.assess import rough, solved, stretched, twisted
 from lce_solver.design import design
 from lce_solver.errors import InputError
 from lce_solver.geometry import face_areas
@@ -171,6 +171,40 @@ def test_material_that_can_not_reach_the_target_is_a_warning():
     found = finding(plan, "stretch_rms")
     assert found.severity is Severity.WARNING
     assert found.value > found.limit == 0.05
+
+
+def test_stretches_far_off_are_an_error(plan):
+    found, _ = stretched(replace(plan, stretch=plan.stretch * 1.07))
+    assert found.severity is Severity.WARNING
+    found, _ = stretched(replace(plan, stretch=plan.stretch * 1.13))
+    assert found.severity is Severity.ERROR
+    assert found.value > found.limit == 0.1
+
+
+def test_a_twist_of_a_quarter_turn_is_an_error(plan):
+    """The plates cannot tell +91 from -89 degrees."""
+    factor = 90 / np.degrees(np.abs(plan.dtheta).max())
+    assert twisted(replace(plan, dtheta=plan.dtheta * factor * 0.99)).severity is Severity.WARNING
+    found = twisted(replace(plan, dtheta=plan.dtheta * factor * 1.01))
+    assert found.severity is Severity.ERROR
+    assert found.value > found.limit == 90
+    assert "other twist" in found.message
+
+
+def test_a_cap_that_leaves_no_use_of_twist_is_told():
+    weak = Material(0.999, 0.5)
+    free = design(hill(), weak, 20.0, 0.1, starts=1, tolerance=1e-6)
+    assert finding(free, "twist_limit").severity is Severity.ERROR
+    capped = design(hill(), weak, 20.0, 0.1, starts=1, tolerance=1e-6, twist_limit=np.radians(5))
+    assert finding(capped, "twist_limit").severity is Severity.INFO
+    assert finding(capped, "twist_cost").severity is Severity.WARNING
+    assert "choose lambda further from 1" in finding(capped, "twist_cost").message
+
+
+@pytest.mark.parametrize(("lambda_", "nu"), [(1e-300, 0.5), (0.6, 5000.0), (0.6, -5000.0), (30.0, 0.1), (0.9, 1e308)])
+def test_absurd_materials_are_refused(lambda_, nu):
+    with pytest.raises(InputError, match=r"both stretches between 0\.05 and 20"):
+        Material(lambda_, nu)
 
 
 def test_unfinished_solution_is_an_error():

@@ -1,6 +1,8 @@
 """Targets from files: what is welded, what is turned, and which sentence a broken mesh gets."""
 
 import re
+import struct
+import warnings
 
 import meshes
 import numpy as np
@@ -8,7 +10,7 @@ import pytest
 from faults import BAD_MESHES
 
 from lce_solver.errors import InputError
-from lce_solver.surface import boundary_loops, check, edges, load
+from lce_solver.surface import boundary_loops, check, edges, face_areas, load
 from lce_solver.types import Severity, Surface
 
 
@@ -161,7 +163,12 @@ BAD_FILES = {
     "short.obj": (b"v 0 0\n", "no readable OBJ file .line 1"),
     "noise.ply": (b"\x00\xff\x13 noise", "noise.ply is no readable PLY file .*; export"),
     "noise.off": (b"noise", "noise.off is no readable OFF file .*; export"),
-    "noise.stl": (b"noise", "noise.stl.* no triangles; export"),
+    "noise.stl": (b"noise", "noise.stl is no readable STL file .5 bytes.*truncated or no STL.; export"),
+    "cut.stl": (b"solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\n", "announces 1 faces and 0 could be read"),
+    "bow.obj": (
+        b"v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n",
+        "bow.obj: polygon 0 of 4 corners .* crosses itself; triangulate it",
+    ),
     "index.off": (b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n", "index.off is no readable OFF file .*index"),
     "short.off": (b"OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "announces 2 faces and 1 could be read"),
     "mesh.step": (b"ISO-10303-21;", "format '.step' is unknown; export the surface as .stl, .obj, .ply, .off"),
@@ -189,5 +196,54 @@ def test_a_missing_file_and_a_folder(tmp_path):
 def test_a_truncated_stl_is_refused(tmp_path):
     meshes.write_stl_binary(tmp_path / "a.stl", *meshes.grid())
     (tmp_path / "b.stl").write_bytes((tmp_path / "a.stl").read_bytes()[:-30])
-    with pytest.raises(InputError, match=r"b\.stl"):
+    with pytest.raises(InputError, match=r"b\.stl is no readable STL file \(1254 bytes.* 24 .*1284: truncated"):
         load(tmp_path / "b.stl")
+
+
+def test_a_text_stl_may_have_a_name_in_latin_1(tmp_path):
+    vertices, faces = meshes.grid()
+    meshes.write_stl_ascii(tmp_path / "a.stl", vertices, faces)
+    (tmp_path / "b.stl").write_bytes((tmp_path / "a.stl").read_bytes().replace(b"hand", b"Fl\xe4che"))
+    np.testing.assert_array_equal(corners(load(tmp_path / "b.stl")[0]), corners(load(tmp_path / "a.stl")[0]))
+
+
+CONCAVE = {
+    "quad": [(0, 0, 0), (2, 0, 0), (2, 2, 0), (1, 0.3, 0)],
+    "chevron": [(0, 0, 0), (3, 0, 0), (3, 3, 0), (2.5, 1, 0), (2, 0.5, 0)],
+}
+
+
+@pytest.mark.parametrize("name", ["plain.obj", "plain.ply", "plain.off"])
+@pytest.mark.parametrize("shape", CONCAVE)
+def test_a_concave_polygon_is_split_inside_itself(tmp_path, name, shape):
+    points = CONCAVE[shape]
+    x, y = np.array(points)[:, :2].T
+    area = (x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2
+    for turn in range(len(points)):
+        ring = [*range(turn, len(points)), *range(turn)]
+        meshes.WRITERS[name](tmp_path / name, np.array(points, float), [ring])
+        assert face_areas(load(tmp_path / name)[0]).sum() == pytest.approx(area, rel=1e-12)
+
+
+def test_a_binary_ply_with_quads_is_split_inside_them(tmp_path):
+    header = "ply\nformat binary_little_endian 1.0\ncomment Fl\xe4che\nelement vertex 4\n"
+    header += "".join(f"property double {a}\n" for a in "xyz")
+    header += "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    points = struct.pack("<12d", *np.ravel(CONCAVE["quad"]))
+    (tmp_path / "a.ply").write_bytes(header.encode("latin-1") + points + struct.pack("<B4i", 4, 0, 1, 2, 3))
+    assert face_areas(load(tmp_path / "a.ply")[0]).sum() == pytest.approx(1.3, rel=1e-12)
+
+
+@pytest.mark.parametrize("scale", [1e-307, 1e-200, 1e200, 1e307])
+@pytest.mark.parametrize("name", ["plain.obj", "plain.ply", "plain.off", "ascii.stl"])
+def test_absurd_units_are_told(tmp_path, name, scale):
+    vertices, faces = meshes.grid()
+    meshes.WRITERS[name](tmp_path / name, vertices * scale, faces)
+    with warnings.catch_warnings(), pytest.raises(InputError, match=r"absurdly far|no area"):
+        warnings.simplefilter("error")
+        load(tmp_path / name)
+
+
+def test_a_null_byte_in_the_path_is_told():
+    with pytest.raises(InputError, match=r"cannot be read .*null"):
+        load("a\0.stl")
