@@ -10,8 +10,11 @@ from decimal import Decimal
 from functools import cache
 from typing import Any
 
-UNITS = {"um": ("App::PropertyLength", -3), "mm": ("App::PropertyLength", 0), "deg": ("App::PropertyAngle", 0)}
-"""Unit of a parameter -> type of its property, and the places its decimal point moves on the way to FreeCAD's unit."""
+UNITS = {"um": ("App::PropertyDistance", -3), "mm": ("App::PropertyDistance", 0), "deg": ("App::PropertyAngle", 0)}
+"""Unit of a parameter -> type of its property, and the places its decimal point moves on the way to FreeCAD's unit.
+
+Not `App::PropertyLength`, which makes 0 of what is negative: an overlay may be, and what may not be is told so.
+"""
 
 TYPES: dict[Any, str] = {
     bool: "App::PropertyBool",

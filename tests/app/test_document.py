@@ -184,6 +184,13 @@ def test_volumes_follow_the_depth_where_only_numpy_is_installed(freecad, fcstd, 
 
 IMPOSSIBLE = {
     "no depth": ("ChannelsParameters", "Depth", 0.0, "ChannelsParameters", "channels.depth_um is 0 um; it must be"),
+    "depth below 0": (
+        "ChannelsParameters",
+        "Depth",
+        "-1 um",
+        "ChannelsParameters",
+        "channels.depth_um is -1 um; it must",
+    ),
     "gap of 6 mm": ("SheetParameters", "Gap", "6 mm", "SheetParameters", "sheet.gap_um is 6000 um; it must be at most"),
     "glass of 3 mm": ("PlatesParameters", "Width", "3 mm", "BottomGlass", "plates.width_mm x height_mm = 3 x"),
     "domain 999": ("OutputParameters", "StepDomains", [999], "ChannelsTop", "domain 999 does not exist"),
