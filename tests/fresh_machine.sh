@@ -29,7 +29,7 @@ else
     tar -C "$folder" -cpf "$folder.tar" .
 fi
 
-git clone --quiet --no-hardlinks "$root" "$folder/root/lce-molds"
+git clone --quiet --no-hardlinks "$root" "$folder/srv/lce-molds"
 cp -L /etc/resolv.conf /etc/hosts "$folder/etc/"
 for file in /etc/pip.conf /etc/apt/apt.conf.d/99*; do
     [ ! -e "$file" ] || cp -L "$file" "$folder$file"
@@ -50,7 +50,7 @@ for command in "$@"; do
     code=0
     # shellcheck disable=SC2086 # a command is words
     env -u DISPLAY -u LC_ALL -u LANG HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin \
-        chroot "$folder" env -C /root/lce-molds ./lce $command || code=$?
+        chroot "$folder" env -C /srv/lce-molds ./lce $command || code=$?
     echo "$suite: ./lce $command: exit code $code, $(($(date +%s) - begin)) s, $(($(du -smx "$folder" | cut -f1) - before)) MB"
     [ "$result" -ne 0 ] || result=$code
 done

@@ -31,10 +31,6 @@ def main(argv):
     if argv[:1] == ["import"]:
         print("imported", __import__(argv[1]).__file__)
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
 '''
 
 
@@ -53,7 +49,7 @@ def make_project(folder: Path) -> Path:
     (root / "lce_workbench").mkdir(parents=True)
     for name in ("solver", "resources/icons", "lce_workbench/gui"):
         shutil.copytree(ROOT / name, root / name, ignore=shutil.ignore_patterns("__pycache__"))
-    package = [f"lce_workbench/{name}.py" for name in ("__init__", "packages", "batch")]
+    package = [f"lce_workbench/{name}.py" for name in ("__init__", "__main__", "packages", "batch")]
     for name in ("lce", "Init.py", "InitGui.py", "package.xml", *package):
         shutil.copy(ROOT / name, root / name)
     (root / "lce_workbench" / "cli.py").write_text(TELLING_CLI)
