@@ -181,6 +181,7 @@ def _new(args: argparse.Namespace) -> int:
         raise InputError(msg)
     job = jobfile.with_default_material(replace(Job(), target=Target(mesh=_relative(target, out.parent))))
     with told(out):
+        out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text(jobfile.dump(job, comments=True), encoding="utf-8")
     for finding in findings:
         print(f"{finding.severity.value}: {finding.message}", file=sys.stderr)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import errno
+import fcntl
+import glob
 import hashlib
 import json
 import os
@@ -40,11 +42,14 @@ def staged(out: Path, *, replaced: Sequence[str] | None = None) -> Iterator[Path
         The disk is full or may not be written.
     """
     out = Path(os.path.realpath(out))  # a link stays, what it points to is replaced
+    with told(out):
+        _recover(out)
     _require_ours(out, replaced)
     made = [parent for parent in out.parents if not parent.exists()]
     with told(out):
         out.parent.mkdir(parents=True, exist_ok=True)
         stage = Path(tempfile.mkdtemp(prefix=f".{out.name}.", suffix=".partial", dir=out.parent))
+    claim = _claim(stage)
     try:
         with told(out):
             stage.chmod(0o777 & ~_umask())
@@ -56,9 +61,39 @@ def staged(out: Path, *, replaced: Sequence[str] | None = None) -> Iterator[Path
             _exchange(stage, out)
     finally:
         shutil.rmtree(stage, ignore_errors=True)
+        os.close(claim)
         with suppress(OSError):  # not empty: it holds the result
             for parent in made:
                 parent.rmdir()
+
+
+def _claim(folder: Path) -> int:
+    """Lock a folder for as long as this process lives and the descriptor is open.
+
+    Raises
+    ------
+    BlockingIOError
+        Another process has it.
+    """
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        os.close(descriptor)
+        raise
+    return descriptor
+
+
+def _recover(out: Path) -> None:
+    """Undo what a killed run left beside ``out``: the former folder comes back, half-written ones go."""
+    for left in sorted(out.parent.glob(f".{glob.escape(out.name)}.????????.*")):
+        with suppress(BlockingIOError):  # its run is alive
+            claim = _claim(left)
+            if left.suffix == ".former" and not out.exists():
+                left.rename(out)
+            elif left.suffix in {".former", ".partial"}:
+                shutil.rmtree(left)
+            os.close(claim)
 
 
 def _remove(path: Path) -> None:
@@ -72,6 +107,9 @@ def _require_ours(out: Path, replaced: Sequence[str] | None) -> None:
     """Refuse to replace files that we did not write, or that somebody changed since."""
     if out.exists() and not out.is_dir():
         msg = f"{out} is a file; choose a folder with --out"
+        raise InputError(msg)
+    if out.is_mount():
+        msg = f"{out} is a mount point, which cannot be replaced whole; choose a folder in it with --out"
         raise InputError(msg)
     if not out.is_dir() or not any(out.iterdir()):
         return
@@ -100,13 +138,17 @@ def _exchange(stage: Path, out: Path) -> None:
         stage.rename(out)
         return
     former = stage.with_suffix(".former")
-    out.rename(former)
+    claim = _claim(out)
     try:
-        stage.rename(out)
-    except BaseException:
-        former.rename(out)
-        raise
-    shutil.rmtree(former)
+        out.rename(former)
+        try:
+            stage.rename(out)
+        except BaseException:
+            former.rename(out)
+            raise
+        shutil.rmtree(former)
+    finally:
+        os.close(claim)
 
 
 @contextmanager

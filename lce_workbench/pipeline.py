@@ -23,7 +23,7 @@ from lce_solver.shell import film_of, predict, settle
 from lce_solver.types import Design, Finding, Progress, Severity, Status, silent
 from lce_workbench import ROOT, __version__
 from lce_workbench.core import align, jobfile, material, target
-from lce_workbench.core.cell import Cell, assemble, select
+from lce_workbench.core.cell import Cell, assemble, choose, select
 from lce_workbench.core.channels import ChannelField, Channels, empty_domains, hatch
 from lce_workbench.core.domains import PLATES, Plate, partition
 from lce_workbench.core.fields import left_out
@@ -138,8 +138,9 @@ def run_design(run: Run) -> Findings:
     (run.folder / "job.toml").write_text(jobfile.dump(rebased(job, run.base, run.folder)), encoding="utf-8")
     write_design(result, run.folder / "design.npz")
     domains = partition(result)
-    counts = [ChannelField(domains, plate, job.channels).counts for plate in PLATES]
-    write_table(domains, counts, run.folder / "domains.csv")
+    fields = {plate: ChannelField(domains, plate, job.channels) for plate in PLATES}
+    choose(domains, fields, job.output.step_domains)  # told before anything else is computed
+    write_table(domains, [fields[plate].counts for plate in PLATES], run.folder / "domains.csv")
     return (*said, *told, *result.findings, *target.sized(result, job), *sheet_findings(job))
 
 

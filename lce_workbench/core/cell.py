@@ -23,7 +23,7 @@ import numpy as np
 from lce_solver.errors import InputError
 from lce_solver.topology import boundary_loops
 from lce_solver.types import Floats
-from lce_workbench.core.channels import Channels, corners
+from lce_workbench.core.channels import ChannelField, Channels, corners
 from lce_workbench.core.domains import PLATES, SIDE, Domains, Plate, signed_area
 from lce_workbench.core.frame import Frame
 from lce_workbench.core.job import Job
@@ -174,7 +174,9 @@ def assemble(
     return Cell((*bottom[::-1], left, right, film, *top), tuple(solids), tuple(combs), chosen)
 
 
-def choose(domains: Domains, channels: Mapping[Plate, Channels], wanted: Sequence[int]) -> tuple[int, ...]:
+def choose(
+    domains: Domains, channels: Mapping[Plate, Channels | ChannelField], wanted: Sequence[int]
+) -> tuple[int, ...]:
     """The domains whose channels become solids: those ``wanted``, or the most central one.
 
     Raises

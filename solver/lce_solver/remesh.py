@@ -153,14 +153,16 @@ def _mmg(surface: Surface, size: float, fixed: Ints) -> Surface:
 
 @contextmanager
 def _signals_kept() -> Iterator[None]:
-    """Put the signal handlers back: MMG sets its own and leaves the default ones, with which Ctrl-C kills at once."""
+    """Hold signals back and put their handlers back: MMG sets its own, which end the process at once."""
     handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    held = signal.pthread_sigmask(signal.SIG_BLOCK, handlers)
     try:
         yield
     finally:
         if threading.current_thread() is threading.main_thread():  # no other may set them
             for number, handler in handlers.items():
                 signal.signal(number, handler)
+        signal.pthread_sigmask(signal.SIG_SETMASK, held)
 
 
 def _on(target: Surface, loops: list[Ints], found: Surface) -> Surface:

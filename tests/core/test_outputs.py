@@ -1,5 +1,8 @@
 """The output folder appears whole or not at all."""
 
+import os
+from pathlib import Path
+
 import pytest
 
 from lce_solver.errors import EnvironmentFault, InputError
@@ -31,6 +34,49 @@ def test_a_broken_run_leaves_what_was_there(tmp_path, fault, exists):
         raise fault
     assert [p.name for p in tmp_path.iterdir()] == (["out"] if exists else [])
     assert not exists or (tmp_path / "out" / "a.txt").read_text() == "one"
+
+
+def killed_run(out):
+    child = os.fork()
+    if child == 0:
+        with staged(out) as folder:
+            (folder / "a.txt").write_text("half")
+            os._exit(9)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 9
+
+
+@pytest.mark.parametrize("exists", [False, True])
+def test_the_next_run_clears_what_a_killed_one_left(tmp_path, exists):
+    if exists:
+        make(tmp_path / "out")
+    killed_run(tmp_path / "out")
+    assert len(list(tmp_path.iterdir())) == 1 + exists
+    make(tmp_path / "out", "two")
+    assert [p.name for p in tmp_path.iterdir()] == ["out"]
+    assert (tmp_path / "out" / "a.txt").read_text() == "two"
+
+
+def test_a_run_killed_between_its_two_renames_loses_nothing(tmp_path):
+    make(tmp_path / "out")
+    (tmp_path / "out").rename(tmp_path / ".out.abcdefgh.former")
+    with pytest.raises(RuntimeError), staged(tmp_path / "out"):
+        raise RuntimeError
+    assert [p.name for p in tmp_path.iterdir()] == ["out"]
+    assert (tmp_path / "out" / "a.txt").read_text() == "one"
+
+
+def test_a_run_that_is_alive_keeps_its_folder(tmp_path):
+    with staged(tmp_path / "out") as folder:
+        (folder / "a.txt").write_text("slow")
+        write_manifest(folder, OURS)
+        make(tmp_path / "out", "quick")
+        assert folder.is_dir()
+    assert (tmp_path / "out" / "a.txt").read_text() == "slow"
+
+
+def test_a_mount_point_is_refused_before_the_work():
+    with pytest.raises(InputError, match="mount point"), staged(Path("/dev/shm")):
+        pass
 
 
 def test_kept_files_are_kept_and_the_former_folder_is_not_touched_through_them(tmp_path):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import subprocess
 
 import numpy as np
 import pytest
@@ -246,3 +248,10 @@ def test_ctrl_c_is_still_caught_after_remeshing():
     remesh(square(10), 0.2)
     with pytest.raises(KeyboardInterrupt):
         signal.raise_signal(signal.SIGINT)
+
+
+def test_ctrl_c_in_the_middle_of_remeshing_does_not_kill():
+    with pytest.raises(KeyboardInterrupt):
+        killer = subprocess.Popen(["sh", "-c", f"sleep 0.3; kill -INT {os.getpid()}"])
+        remesh(square(10), 0.01)
+        killer.wait()
