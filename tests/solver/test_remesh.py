@@ -251,7 +251,6 @@ def test_ctrl_c_is_still_caught_after_remeshing():
 
 
 def test_ctrl_c_in_the_middle_of_remeshing_does_not_kill():
-    with pytest.raises(KeyboardInterrupt):
-        killer = subprocess.Popen(["sh", "-c", f"sleep 0.3; kill -INT {os.getpid()}"])
+    kill = ["sh", "-c", f"sleep 0.3; kill -INT {os.getpid()}"]
+    with pytest.raises(KeyboardInterrupt), subprocess.Popen(kill):
         remesh(square(10), 0.01)
-        killer.wait()
