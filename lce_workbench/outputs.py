@@ -12,14 +12,14 @@ import shutil
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from lce_solver.errors import EnvironmentFault, InputError
-from lce_solver.types import Design, Finding, Flattening, Ints, Material, Prediction, Severity, Status, Surface
+from lce_solver.types import Design, Finding, Flattening, Ints, Material, Prediction, Severity, Start, Status, Surface
 
 if TYPE_CHECKING:  # it imports SciPy, which the Python inside FreeCAD may lack
     from lce_solver.compare import Comparison
@@ -248,7 +248,16 @@ def write_design(design: Design, path: Path) -> None:
         iterations=design.flattening.iterations,
         flipped=design.flattening.flipped,
         crossings=design.flattening.crossings,
+        **{f"start_{field.name}": [_plain(getattr(start, field.name)) for start in design.starts] for field in STARTS},
     )
+
+
+STARTS = fields(Start)
+"""Columns of the record of the starts that competed, in `design.npz` with ``start_`` before their names."""
+
+
+def _plain(value: Any) -> Any:
+    return value.name if isinstance(value, Status) else value
 
 
 def write_prediction(found: Prediction, judged: Comparison, folder: Path) -> None:
@@ -301,7 +310,13 @@ def _design(data: Mapping[str, Any]) -> Design:
         thickness=float(data["thickness"]),
         flattening=flat,
         bending_left=float(data["bending_left"]),
+        starts=tuple(_start(row) for row in zip(*(data[f"start_{field.name}"] for field in STARTS), strict=True)),
     )
+
+
+def _start(row: Sequence[Any]) -> Start:
+    values = {field.name: value.item() for field, value in zip(STARTS, row, strict=True)}
+    return Start(**{**values, "status": Status[values["status"]]})
 
 
 def _ints(array: Any) -> Ints:

@@ -1,12 +1,23 @@
 """The output folder appears whole or not at all."""
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from sheets import design
 
 from lce_solver.errors import EnvironmentFault, InputError
-from lce_workbench.outputs import MANIFEST, read_manifest, require_unchanged, staged, write_manifest
+from lce_solver.types import Start, Status
+from lce_workbench.outputs import (
+    MANIFEST,
+    read_design,
+    read_manifest,
+    require_unchanged,
+    staged,
+    write_design,
+    write_manifest,
+)
 
 OURS = {"versions": {"lce-molds": "0"}, "findings": []}
 
@@ -180,3 +191,13 @@ def test_a_full_disk_is_told_and_loses_nothing(tmp_path):
     assert fault.value.exit_code == 4
     assert (out / "a.txt").read_text() == "one"
     assert [p.name for p in tmp_path.iterdir()] == ["out"]
+
+
+def test_the_design_comes_back_with_the_starts_that_competed(tmp_path):
+    starts = (
+        Start(0.0, Status.CONVERGED, 0.01, 0.5, flipped=0, crossings=0, symmetric=True, triangles=96),
+        Start(0.5, Status.OVERLAP, 0.2, 0.9, flipped=0, crossings=3, symmetric=False, triangles=24),
+    )
+    for competed in (starts, ()):
+        write_design(replace(design(), starts=competed), tmp_path / "design.npz")
+        assert read_design(tmp_path / "design.npz").starts == competed
