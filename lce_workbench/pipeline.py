@@ -14,8 +14,6 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from lce_solver.compare import REACH, Comparison, Verdict, compare
 from lce_solver.design import design
 from lce_solver.errors import EnvironmentFault, InputError, LceError, SolverError
@@ -23,14 +21,15 @@ from lce_solver.shell import film_of, predict, settle
 from lce_solver.types import Design, Finding, Progress, Severity, Status, silent
 from lce_workbench import ROOT, __version__
 from lce_workbench.core import align, jobfile, material, target
-from lce_workbench.core.cell import Cell, assemble, choose, select
-from lce_workbench.core.channels import ChannelField, Channels, empty_domains, hatch
+from lce_workbench.core.cell import choose, select
+from lce_workbench.core.channels import ChannelField, Channels, empty_domains
+from lce_workbench.core.closed import closed
 from lce_workbench.core.domains import PLATES, Plate, partition
 from lce_workbench.core.fields import left_out
 from lce_workbench.core.frame import arrange
 from lce_workbench.core.job import Job
 from lce_workbench.core.job_sheet import job_sheet, totals
-from lce_workbench.core.marks import fingerprint, marks
+from lce_workbench.core.marks import fingerprint
 from lce_workbench.core.mask import compose
 from lce_workbench.core.mask_checks import check
 from lce_workbench.core.units import UM
@@ -243,7 +242,7 @@ def run_cad(run: Run) -> Findings:
     job, folder = run.job, run.folder / "cad"
     plan = fabricable(read_design(run.folder / "design.npz"))
     folder.mkdir()
-    cell = cell_of(plan, job)
+    cell = closed(plan, job)
     fields = {plate: ChannelField(partition(plan), plate, job.channels) for plate in PLATES}
     solids: dict[Plate, Iterable[Channels]] = dict(fields)
     if job.output.step == "chosen":
@@ -258,14 +257,6 @@ def run_cad(run: Run) -> Findings:
         run_freecad("document", run.folder, run.folder / "cad" / "cell.FCStd")
     run.progress("cad", 1.0)
     return (expected, *found)
-
-
-def cell_of(plan: Design, job: Job) -> Cell:
-    """The assembled cell of a design."""
-    domains, frame = partition(plan), arrange(plan.uv, job)
-    channels = {plate: hatch(domains, plate, job.channels) for plate in PLATES}
-    drawn = {plate: np.concatenate(list(marks(frame, plate, job.marks).values())) for plate in PLATES}
-    return assemble(frame, job, domains, drawn, channels)
 
 
 def run_freecad(command: str, folder: Path, made: Path) -> None:

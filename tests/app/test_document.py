@@ -13,9 +13,9 @@ from PIL import Image
 from processes import display
 
 from lce_workbench.core import jobfile
+from lce_workbench.core.closed import closed
 from lce_workbench.core.job import Job
 from lce_workbench.outputs import write_design
-from lce_workbench.pipeline import cell_of
 
 JOB = """
 [target]
@@ -102,8 +102,8 @@ def screen():
 
 
 def prisms(design, job):
-    """Name of a body -> its prisms, by the way the pipeline goes: all channels of the sheet."""
-    cell = cell_of(design, job)
+    """Name of a body -> its prisms, by the way the pipeline goes."""
+    cell = closed(design, job)
     found = {prism.name: [prism] for prism in cell.parts}
     for prism in cell.channels:
         found.setdefault(prism.group, []).append(prism)
