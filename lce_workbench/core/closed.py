@@ -45,6 +45,6 @@ def _shown(domains: Domains, job: Job) -> Ints:
 
 def _channels(domains: Domains, plate: Plate, spec: ChannelSpec, shown: Ints) -> Channels:
     """The channels of some domains alone, numbered as in the whole sheet."""
-    rows = (domains.triangles, domains.theta, domains.dtheta, domains.stretch)
-    found = hatch(Domains(domains.vertices, *(row[shown] for row in rows)), plate, spec)
+    rows = {name: getattr(domains, name)[shown] for name in ("triangles", "theta", "dtheta", "stretch")}
+    found = hatch(replace(domains, **rows), plate, spec)
     return replace(found, angle=domains.angle(plate), domain=shown[found.domain])
