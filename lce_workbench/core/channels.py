@@ -147,11 +147,11 @@ def corners(channels: Channels, rows: slice = slice(None)) -> Floats:
 def rectangles(centre: Floats, length: Floats, angle: Floats, width: float) -> Floats:
     """Corners (n, 4, 2) of rectangles with middles (n, 2), counter-clockwise; the first edge runs along ``angle``."""
     c, s = np.cos(angle), np.sin(angle)
-    half, side = length / 2, width / 2
     polygons = np.empty((len(centre), 4, 2))
-    for i, (along, across) in enumerate(((-1, -1), (1, -1), (1, 1), (-1, 1))):  # by component: twice as fast
-        polygons[:, i, 0] = centre[:, 0] + along * half * c - across * side * s
-        polygons[:, i, 1] = centre[:, 1] + along * half * s + across * side * c
+    for axis, along, across in ((0, length / 2 * c, -width / 2 * s), (1, length / 2 * s, width / 2 * c)):
+        back, front = centre[:, axis] - along, centre[:, axis] + along
+        for i, (end, side) in enumerate(((back, -across), (front, -across), (front, across), (back, across))):
+            np.add(end, side, out=polygons[:, i, axis])  # by component: twice as fast
     return polygons
 
 

@@ -6,8 +6,9 @@ their memory does not grow with the plate.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,11 @@ MAX_REACH = 1e8
 AREA_LOSS = 0.04
 """Largest fraction of the channel area that guards and square ends may cost."""
 
+MAX_TURN = 1e-3
+"""Largest error of a domain's direction [degrees]; the twist is a few degrees."""
+
+RUN = 8192
+"""Polygons measured at once."""
 
 Points = NDArray[np.complex128]
 """Points of the plane as x + i y [nm]: the product of conj(a) and b holds their scalar and vector products."""
@@ -49,10 +55,23 @@ class Block:
     domain: Ints
     """(n,) domain of each channel."""
     borders: Points
-    """(3, n_d) corners of all domains, seen from above."""
+    """(k, n_d) corners of all domains, seen from above; those with fewer repeat their last."""
     direction: Floats
     """(n_d,) angle of the channels that all domains should have on the master [rad]."""
     spec: ChannelSpec
+
+    @cached_property
+    def turned(self) -> tuple[Floats, Floats, Ints]:
+        """Error of each domain's written direction (n,) [rad], mean length of its channels (n,) [nm], the domain (n,).
+
+        The direction is the best fit to all corners of all channels: each channel counts with its length squared, for
+        rounding turns it by an angle that falls with its length.
+        """
+        p = self.written
+        along = (p[1] - p[0] + p[2] - p[3]) / 2
+        domain, starts, number = np.unique(self.domain, return_index=True, return_counts=True)
+        mean = np.add.reduceat(along**2, starts) * np.exp(-2j * self.direction[domain])
+        return np.abs(np.angle(mean)) / 2, np.add.reduceat(_size(along), starts) / number, domain
 
 
 Measured = tuple[Floats, Ints]
@@ -69,6 +88,8 @@ class Check:
     """Whether the limit is a lower one."""
     unit: str
     quantity: str
+    severity: Severity = Severity.ERROR
+    """Of a value beyond the limit."""
 
 
 def width_error(block: Block) -> Measured:
@@ -104,8 +125,9 @@ def inset(block: Block) -> Measured:
     borders = block.borders[:, first : int(block.domain[-1]) + 1]
     nearest = np.full(len(local), np.inf)
     for start, end in zip(borders, np.roll(borders, -1, axis=0), strict=True):
-        along = (end - start) / np.abs(end - start)
-        offset, x, y = _cross(along, start)[local], along.real[local], along.imag[local]
+        size = np.abs(end - start)
+        along = (end - start) / np.where(size > 0, size, 1.0)
+        offset, x, y = np.where(size > 0, _cross(along, start), -np.inf)[local], along.real[local], along.imag[local]
         for corner in block.seen:
             np.minimum(nearest, x * corner.imag - y * corner.real - offset, out=nearest)
     return nearest, block.domain
@@ -115,15 +137,16 @@ def angle_error(block: Block) -> Measured:
     """Error of each domain's written direction as a sideways shift of its channels' ends, on average [nm].
 
     Rounding shifts both ends of every channel by up to sqrt(1/2) nm, so it cannot shift their average by more than
-    `ROUNDING`, however long the channels are; the direction is their length-weighted mean as a line field.
+    `ROUNDING`, however long the channels are.
     """
-    p = block.written
-    along = (p[1] - p[0] + p[2] - p[3]) / 2
-    size = _size(along)
-    domain, starts, number = np.unique(block.domain, return_index=True, return_counts=True)
-    mean = np.add.reduceat(along**2 / size, starts)
-    error = np.angle(mean * np.exp(-2j * block.direction[domain])) / 2
-    return np.abs(error) * np.add.reduceat(size, starts) / number, domain
+    angle, size, domain = block.turned
+    return angle * size, domain
+
+
+def direction_error(block: Block) -> Measured:
+    """Error of each domain's written direction [degrees]; rounding makes it large where a domain is a speck."""
+    angle, _, domain = block.turned
+    return np.degrees(angle), domain
 
 
 CHANNEL_CHECKS: dict[str, Check] = {
@@ -138,49 +161,99 @@ CHANNEL_CHECKS: dict[str, Check] = {
     "channel_angle": Check(
         angle_error, lambda _: ROUNDING, False, "nm", "largest error of a domain's direction, at its channels' ends"
     ),
+    "domain_angle": Check(
+        direction_error,
+        lambda _: MAX_TURN,
+        False,
+        "degrees",
+        "largest error of a domain's written direction",
+        Severity.WARNING,
+    ),
 }
 """Measured on every channel. Lands between channels of different domains are at least two insets wide."""
 
 
 def check(mask: Mask, field: ChannelField, frame: Frame, job: Job) -> tuple[Finding, ...]:
-    """Measure a mask; a finding is an error where it leaves its limit.
+    """Measure a mask; a finding is an error where it leaves its limit. The channels are gone through once.
 
     Parameters
     ----------
-    field : what ``CHANNELS`` was made of; only the domain of each channel is used.
+    field : what ``CHANNELS`` was made of; only the number of channels in each domain is used.
     """
+    channels, survey = _channel_findings(mask, field)
+    surveys = {name: _survey(mask, name) for name in mask.layers if name != "CHANNELS"} | {"CHANNELS": survey}
     return (
-        *_channel_findings(mask, field),
-        *_polygon_findings(mask),
+        *channels,
+        *_polygon_findings(mask, surveys),
         _border(mask, field.domains),
         *_mark_findings(mask, frame, job),
-        *_extent_findings(mask),
+        *_extent_findings(mask, surveys),
     )
 
 
-def _channel_findings(mask: Mask, field: ChannelField) -> Iterator[Finding]:
-    """The worst value of every channel check, and the area of all channels."""
+@dataclass(frozen=True)
+class Survey:
+    """What is measured on the polygons of every layer."""
+
+    turn: float = np.inf
+    """Smallest vector product of two consecutive edges [nm2]."""
+    edge: float = np.inf
+    """Shortest edge [nm]."""
+    corners: int = 0
+    """Most corners."""
+    low: tuple[float, float] = (np.inf, np.inf)
+    """Lower left corner of everything [nm]."""
+    high: tuple[float, float] = (-np.inf, -np.inf)
+    """Upper right corner of everything [nm]."""
+
+    def with_(self, corners: Points) -> Survey:
+        """With polygons (k, n) added."""
+        side = np.roll(corners, -1, axis=0) - corners
+        x, y = corners.real, corners.imag
+        return Survey(
+            min(self.turn, *(float(_cross(side[i - 1], side[i]).min()) for i in range(len(side)))),
+            min(self.edge, float(np.abs(side).min())),
+            max(self.corners, len(corners)),
+            (min(self.low[0], float(x.min())), min(self.low[1], float(y.min()))),
+            (max(self.high[0], float(x.max())), max(self.high[1], float(y.max()))),
+        )
+
+
+def _survey(mask: Mask, layer: str) -> Survey:
+    survey = Survey()
+    for corners in _blocks(mask, layer):
+        survey = survey.with_(corners)
+    return survey
+
+
+def _channel_findings(mask: Mask, field: ChannelField) -> tuple[list[Finding], Survey]:
+    """The worst value of every channel check, and the area of all channels; also what is measured on any layer."""
     worst: dict[str, tuple[float, int]] = {}
-    exposed = 0.0
+    survey, exposed, first, last = Survey(), 0.0, 0, np.cumsum(field.counts)
     borders, direction = _points(field.domains.corners / NM).T, field.domains.written(mask.plate)
-    for part, polygons in zip(field, mask.layers["CHANNELS"], strict=True):
-        if not len(part):
-            continue
-        corners = np.ascontiguousarray(_points(polygons).T)
+    for corners in _blocks(mask, "CHANNELS"):
+        survey = survey.with_(corners)
+        domain = np.searchsorted(last, np.arange(first, first + corners.shape[1]), side="right")
         seen = -np.conj(corners[::-1]) if mask.plate == "top" else corners
-        block = Block(corners, seen, part.domain, borders, direction, field.spec)
-        for name, item in CHANNEL_CHECKS.items():
-            values, domain = item.measure(block)
-            if len(values):
-                i = int(np.argmin(values) if item.at_least else np.argmax(values))
-                found = float(values[i]), int(domain[i])
-                worst[name] = (min if item.at_least else max)(worst.get(name, found), found)
+        _keep_worst(worst, Block(corners, seen, domain, borders, direction, field.spec))
         exposed += float(_cross(corners[2] - corners[0], corners[3] - corners[1]).sum()) / 2
+        first += corners.shape[1]
+    found = []
     for name, (value, place) in worst.items():
         item = CHANNEL_CHECKS[name]
         measured = Measurement(value, item.limit(field.spec), item.at_least, item.unit, f"domain {place}")
-        yield _judged(mask, name, item.quantity, measured)
-    yield _area(mask, field, exposed)
+        found.append(_judged(mask, name, item.quantity, measured, item.severity))
+    return [*found, _area(mask, field, exposed)], survey
+
+
+def _keep_worst(worst: dict[str, tuple[float, int]], block: Block) -> None:
+    """Put each check's worst value in ``block``, with its domain, into ``worst`` where that is better."""
+    for name, item in CHANNEL_CHECKS.items():
+        values, domain = item.measure(block)
+        if len(values):
+            i = int(np.argmin(values) if item.at_least else np.argmax(values))
+            found = float(values[i]), int(domain[i])
+            worst[name] = (min if item.at_least else max)(worst.get(name, found), found)
 
 
 def _area(mask: Mask, field: ChannelField, exposed: float) -> Finding:
@@ -190,24 +263,23 @@ def _area(mask: Mask, field: ChannelField, exposed: float) -> Finding:
     return _judged(mask, "channel_area", text, Measurement(ratio, 1 - AREA_LOSS, True), Severity.WARNING)
 
 
-def _polygon_findings(mask: Mask) -> Iterator[Finding]:
+def _polygon_findings(mask: Mask, surveys: Mapping[str, Survey]) -> Iterator[Finding]:
     """Convexity, edge length and number of corners of every polygon of every layer."""
-    turn, edge, most = (np.inf, ""), (np.inf, ""), (0, "")
-    for name, groups in mask.layers.items():
-        for part in (part for group in groups for part in _parts(group)):
-            corners = np.ascontiguousarray(_points(part).T)
-            side = np.roll(corners, -1, axis=0) - corners
-            turn = min(turn, (float(_cross(side, np.roll(side, -1, axis=0)).min()), name))
-            edge = min(edge, (float(np.abs(side).min()), name))
-            most = max(most, (len(corners), name))
+    flat = min(surveys, key=lambda name: surveys[name].turn)
+    short = min(surveys, key=lambda name: surveys[name].edge)
+    rich = max(surveys, key=lambda name: surveys[name].corners)
     for check, text, found in (
         (
             "polygon_convex",
             "smallest turn at a corner (positive: convex, counter-clockwise)",
-            Measurement(turn[0], 1.0, True, "nm2", turn[1]),
+            Measurement(surveys[flat].turn, 1.0, True, "nm2", flat),
         ),
-        ("polygon_edge", "shortest edge of a polygon", Measurement(edge[0], 1.0, True, "nm", edge[1])),
-        ("polygon_corners", "most corners of a polygon", Measurement(most[0], MAX_CORNERS, False, "", most[1])),
+        ("polygon_edge", "shortest edge of a polygon", Measurement(surveys[short].edge, 1.0, True, "nm", short)),
+        (
+            "polygon_corners",
+            "most corners of a polygon",
+            Measurement(surveys[rich].corners, MAX_CORNERS, False, "", rich),
+        ),
     ):
         yield _judged(mask, check, text, found)
 
@@ -255,17 +327,15 @@ def _mark_findings(mask: Mask, frame: Frame, job: Job) -> Iterator[Finding]:
         yield _judged(mask, name, text, Measurement(float(gap), least - ROUNDING, True, "nm"))
 
 
-def _extent_findings(mask: Mask) -> Iterator[Finding]:
+def _extent_findings(mask: Mask, surveys: Mapping[str, Survey]) -> Iterator[Finding]:
     """Everything lies on the writer's largest plate, and what is exposed lies on this one."""
-    bounds = {
-        name: np.array([_bounds(group) for group in groups if len(group)]) for name, groups in mask.layers.items()
-    }
-    reach = max(float(np.abs(found).max(initial=0)) for found in bounds.values())
-    yield _judged(mask, "extent", "largest coordinate", Measurement(reach, MAX_REACH, False, "nm"))
-    plate, exposed = bounds["PLATE"][0], np.concatenate([bounds[name].reshape(-1, 4) for name in EXPOSED])
-    inside = min((exposed - plate)[:, :2].min(), (plate - exposed)[:, 2:].min())
+    reach = max(max(np.abs((*survey.low, *survey.high))) for survey in surveys.values() if survey.corners)
+    yield _judged(mask, "extent", "largest coordinate", Measurement(float(reach), MAX_REACH, False, "nm"))
+    plate, exposed = surveys["PLATE"], [surveys[name] for name in EXPOSED]
+    low = min(min(np.subtract(survey.low, plate.low)) for survey in exposed)
+    high = min(min(np.subtract(plate.high, survey.high)) for survey in exposed)
     text = "smallest distance from what is exposed to the plate's edge"
-    yield _judged(mask, "plate_margin", text, Measurement(float(inside), 0.0, True, "nm"))
+    yield _judged(mask, "plate_margin", text, Measurement(float(min(low, high)), 0.0, True, "nm"))
 
 
 @dataclass(frozen=True)
@@ -288,9 +358,12 @@ def _judged(mask: Mask, name: str, quantity: str, found: Measurement, severity: 
     return Finding(name, Severity.INFO if good else severity, text, found.value, found.limit, found.unit, where)
 
 
-def _parts(polygons: Nanometres, size: int = 8192) -> Iterator[Nanometres]:
-    """The polygons in runs."""
-    return (polygons[start : start + size] for start in range(0, len(polygons), size))
+def _blocks(mask: Mask, layer: str) -> Iterator[Points]:
+    """Corners (k, n) of a layer's polygons, as they come, at most ``RUN`` of marks at once."""
+    for group in mask.layers[layer]:
+        size = len(group) if layer == "CHANNELS" else RUN  # a block of channels holds whole domains
+        for start in range(0, len(group), size):
+            yield np.ascontiguousarray(_points(group[start : start + size]).T)
 
 
 def _points(polygons: Nanometres | Floats) -> Points:
@@ -313,12 +386,6 @@ def _size(a: Points) -> Floats:
 def _boxes(polygons: Nanometres) -> Floats:
     """Bounding boxes (n, 4): low x, low y, high x, high y."""
     return np.concatenate([polygons.min(axis=1), polygons.max(axis=1)], axis=1).astype(np.float64)
-
-
-def _bounds(polygons: Nanometres) -> tuple[int, ...]:
-    """Low x, low y, high x, high y of all polygons."""
-    x, y = polygons[..., 0], polygons[..., 1]
-    return int(x.min()), int(y.min()), int(x.max()), int(y.max())
 
 
 def _gaps(a: Floats, b: Floats) -> Floats:

@@ -116,6 +116,7 @@ FAULTS = {
     "channel_spacing": ("CHANNELS", lambda p: across(p, 200, 5)),
     "channel_inset": ("CHANNELS", lambda p: along(p, 50, 100)),
     "channel_angle": ("CHANNELS", turn_domain),
+    "domain_angle": ("CHANNELS", turn_domain),
     "channel_area": ("CHANNELS", half_of_them),
     "polygon_convex": ("CHANNELS", bow_tie),
     "polygon_edge": ("LABELS", merge_corners),
@@ -135,7 +136,7 @@ FAULTS = {
 def test_each_check_sees_its_fault(name):
     layer, change = FAULTS[name]
     finding = found(changed(MASKS["bottom"], layer, change))[name]
-    expected = Severity.WARNING if name == "channel_area" else Severity.ERROR
+    expected = Severity.WARNING if name in {"channel_area", "domain_angle"} else Severity.ERROR
     assert finding.severity is expected, finding.message
     assert (finding.value > finding.limit) != (finding.value < finding.limit)
 
