@@ -106,6 +106,12 @@ def _parser() -> Parser:
         sub.add_argument("job", type=Path, metavar="JOB.toml")
         sub.add_argument("--out", type=Path, metavar="DIR", help="output folder; default out/NAME beside the job file")
         sub.add_argument("--set", nargs="+", action="extend", default=[], metavar="KEY=VALUE", dest="settings")
+        sub.add_argument(
+            "--metric",
+            type=Path,
+            metavar="DIR",
+            help="output folder whose flat sheet to take: only the twist is solved",
+        )
     for name, doc in (
         ("predict", "Simulates the heating of a designed sheet and compares it with the target."),
         ("mask", "Draws the masks of a designed folder."),
@@ -129,7 +135,7 @@ def _job(args: argparse.Namespace) -> int:
     job = jobfile.load(args.job, args.settings)
     out = args.out or args.job.parent / "out" / args.job.stem
     names = list(pipeline.STAGES) if args.command == "build" else ["design"]
-    return _run(args, job, args.job.parent, out, names)
+    return _run(args, job, args.job.parent, out, names, metric=args.metric)
 
 
 def _stage(args: argparse.Namespace) -> int:
@@ -137,10 +143,12 @@ def _stage(args: argparse.Namespace) -> int:
     return _run(args, jobfile.load(args.folder / "job.toml"), args.folder, args.folder, [args.command])
 
 
-def _run(args: argparse.Namespace, job: Job, base: Path, out: Path, names: list[str]) -> int:
+def _run(
+    args: argparse.Namespace, job: Job, base: Path, out: Path, names: list[str], *, metric: Path | None = None
+) -> int:
     progress, close = _progress(args)
     try:
-        code = pipeline.build(job, base, out, names, progress)
+        code = pipeline.build(job, base, out, names, progress, metric=metric)
     finally:
         close()
     _tell(args, out, names, code)

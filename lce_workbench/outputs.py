@@ -223,6 +223,12 @@ def as_record(finding: Finding, stage: str) -> dict[str, Any]:
     return {"stage": stage, **asdict(finding), "severity": finding.severity.value}
 
 
+def as_finding(record: Mapping[str, Any]) -> Finding:
+    """The finding of a record of the manifest."""
+    values = {name: value for name, value in record.items() if name != "stage"}
+    return Finding(**{**values, "severity": Severity(record["severity"])})
+
+
 def has_error(findings: Sequence[Mapping[str, Any]]) -> bool:
     """Whether any record of a finding is an error."""
     return any(record["severity"] == Severity.ERROR.value for record in findings)

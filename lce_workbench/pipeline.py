@@ -36,6 +36,7 @@ from lce_workbench.core.units import UM
 from lce_workbench.export import EXPORTERS
 from lce_workbench.export.pictures import write_pictures
 from lce_workbench.export.table import write_table
+from lce_workbench.former import retwist
 from lce_workbench.outputs import (
     as_record,
     digest,
@@ -61,12 +62,17 @@ class Run:
     base: Path
     """Folder that the job's file names are relative to."""
     progress: Progress = silent
+    metric: Path | None = None
+    """Output folder whose flat sheet and director are taken, or `None`: they are solved."""
 
 
-def build(job: Job, base: Path, out: Path, names: Sequence[str], progress: Progress = silent) -> int:
+def build(
+    job: Job, base: Path, out: Path, names: Sequence[str], progress: Progress = silent, *, metric: Path | None = None
+) -> int:
     """Run the stages ``names`` of one job into ``out``; return the exit code.
 
-    The first stage is ``design``; without it ``out`` must hold one, and its other files are kept.
+    The first stage is ``design``; without it ``out`` must hold one, and its other files are kept. ``metric`` is an
+    output folder of a job that differs in nothing the metric depends on: its solution is taken instead of solved anew.
 
     Raises
     ------
@@ -83,7 +89,7 @@ def build(job: Job, base: Path, out: Path, names: Sequence[str], progress: Progr
     records = [r for r in former.get("findings", ()) if r["stage"] not in names]
     with staged(out, replaced=None if anew else [output for name in names for output in OUTPUTS[name]]) as folder:
         for name in names:
-            findings = STAGES[name](Run(folder, job, base, progress))
+            findings = STAGES[name](Run(folder, job, base, progress, metric))
             records += [as_record(finding, name) for finding in findings]
         code = exit_code(records)
         write_manifest(
@@ -118,21 +124,7 @@ def exit_code(records: Sequence[Mapping[str, Any]]) -> int:
 def run_design(run: Run) -> Findings:
     """Solve the inverse problem: `job.toml`, `design.npz`, `domains.csv`."""
     job = run.job
-    matter, said = material.resolve(job.material, run.base)
-    goal, told = target.resolve(job, matter, run.base)
-    result = design(
-        goal,
-        matter,
-        width=job.sheet.width_mm,
-        thickness=job.sheet.thickness,
-        twist_gain=job.sheet.twist_gain,
-        edge_overdrive=job.sheet.edge_overdrive,
-        twist_limit=job.sheet.twist_limit,
-        starts=job.solver.starts,
-        tolerance=job.solver.tolerance,
-        max_iterations=job.solver.max_iterations,
-        progress=run.progress,
-    )
+    result, said = solved(run) if run.metric is None else retwist(job, inputs(job, run.base), run.metric)
     arrange(result.uv, job)  # a plate that is too small is told before anything is drawn
     (run.folder / "job.toml").write_text(jobfile.dump(rebased(job, run.base, run.folder)), encoding="utf-8")
     write_design(result, run.folder / "design.npz")
@@ -140,7 +132,25 @@ def run_design(run: Run) -> Findings:
     fields = {plate: ChannelField(domains, plate, job.channels) for plate in PLATES}
     choose(domains, fields, job.output.step_domains)  # told before anything else is computed
     write_table(domains, [fields[plate].counts for plate in PLATES], run.folder / "domains.csv")
-    return (*said, *told, *result.findings, *target.sized(result, job), *sheet_findings(job))
+    return (*said, *target.sized(result, job), *sheet_findings(job))
+
+
+def solved(run: Run) -> tuple[Design, Findings]:
+    """The design of the job, and what was found on the way."""
+    job = run.job
+    matter, said = material.resolve(job.material, run.base)
+    goal, told = target.resolve(job, matter, run.base)
+    result = design(
+        goal,
+        matter,
+        width=job.sheet.width_mm,
+        **job.sheet.twist,
+        starts=job.solver.starts,
+        tolerance=job.solver.tolerance,
+        max_iterations=job.solver.max_iterations,
+        progress=run.progress,
+    )
+    return result, (*said, *told, *result.findings)
 
 
 def rebased(job: Job, base: Path, folder: Path) -> Job:

@@ -86,6 +86,16 @@ class Sheet:
         """Prepared film thickness [mm]."""
         return self.gap_um * UM
 
+    @property
+    def twist(self) -> dict[str, Any]:
+        """All that the twist depends on and the metric does not, as the solver names it."""
+        return {
+            "thickness": self.thickness,
+            "twist_gain": self.twist_gain,
+            "edge_overdrive": self.edge_overdrive,
+            "twist_limit": self.twist_limit,
+        }
+
 
 @dataclass(frozen=True)
 class DomainSpec:

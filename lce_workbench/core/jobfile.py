@@ -230,6 +230,26 @@ CONTRADICTIONS: tuple[Callable[[Job], str], ...] = (_target_fault, _material_fau
 """Each says what is wrong, or nothing."""
 
 
+METRIC_SECTIONS = ("target", "material", "sheet", "domains", "solver")
+"""What the flat sheet and its director are made from, but for what only the twist depends on."""
+
+TWIST_KEYS = ("gap_um", "twist_gain", "twist_limit_deg", "edge_overdrive")
+"""Parameters of the sheet that the metric does not depend on."""
+
+FILES = {"target.mesh", "material.curve"}
+"""Names of files, relative to the job file: two jobs are compared by what stands in the files."""
+
+
+def metric_values(job: Job) -> dict[str, Any]:
+    """Name as in the job file -> value of all that the metric depends on, without the names of files."""
+    values = {
+        f"{name}.{toml_name(f)}": getattr(getattr(job, name), f.name)
+        for name in METRIC_SECTIONS
+        for f in fields(getattr(job, name))
+    }
+    return {name: value for name, value in values.items() if name not in FILES | {f"sheet.{k}" for k in TWIST_KEYS}}
+
+
 def with_default_material(job: Job) -> Job:
     """The job with the default preset."""
     return replace(job, material=replace(job.material, preset=DEFAULT_PRESET))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
@@ -11,10 +13,35 @@ from lce_solver.topology import half_edges, neighbours
 from lce_solver.twist import FLAT, edge_factor, in_director_frame, twist, twisted_form
 from lce_solver.types import Design, Finding, Floats, Ints, Severity
 
+FOLLOWED = 3.0
+"""Thicknesses over which a film evens out its bending: a plate's edge effects reach about that far."""
 COSTLY = 0.05
 """Part of the target's bending from which on what filter and cap take away is a warning."""
 USELESS = 0.5
 """Part of the bending in reach of twist below which what is left of the twist is of no use."""
+
+
+def retwisted(
+    plan: Design,
+    form: Floats,
+    thickness: float,
+    *,
+    twist_gain: float = 1.0,
+    edge_overdrive: bool = False,
+    twist_filter: float = FOLLOWED,
+    twist_limit: float = np.inf,
+) -> Design:
+    """The design for a film of another ``thickness`` [mm], gain or limit: its metric, and the twist anew.
+
+    Flat sheet and director depend on none of them. ``form`` is the `second_form` of the design; the others are as for
+    `lce_solver.design.design`. The findings are left as they were.
+    """
+    thicker = replace(plan, thickness=thickness)
+    length = twist_filter * thickness
+    found = bounded_twist(
+        form, thicker, gain=twist_gain, overdrive=edge_overdrive, filter_length=length, limit=twist_limit
+    )
+    return replace(thicker, dtheta=found)
 
 
 def bounded_twist(

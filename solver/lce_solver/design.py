@@ -8,17 +8,15 @@ import numpy as np
 
 from lce_solver import judge
 from lce_solver.assess import assess
-from lce_solver.bounded import bounded_twist, cost
+from lce_solver.bounded import FOLLOWED, cost, retwisted
 from lce_solver.contest import compete
 from lce_solver.errors import InputError
 from lce_solver.geometry import area_vectors, face_areas
 from lce_solver.metric import Stop
 from lce_solver.plane import rectangle_angles, turn
 from lce_solver.twist import bending_left, second_form
-from lce_solver.types import Design, Floats, Material, Progress, Surface, line_angle, silent
+from lce_solver.types import Design, Finding, Floats, Material, Progress, Surface, line_angle, silent
 
-FOLLOWED = 3.0
-"""Thicknesses over which a film evens out its bending: a plate's edge effects reach about that far."""
 SIDEWAYS = 0.1
 """If less than this of the x axis is seen along the mean normal, the y axis points right instead."""
 
@@ -84,12 +82,21 @@ def design(
         bending_left=bending_left(form, theta, material, face_areas(target)),
         starts=competed,
     )
-    length = twist_filter * thickness
-    dtheta = bounded_twist(
-        form, result, gain=twist_gain, overdrive=edge_overdrive, filter_length=length, limit=twist_limit
+    result = retwisted(
+        result,
+        form,
+        thickness,
+        twist_gain=twist_gain,
+        edge_overdrive=edge_overdrive,
+        twist_filter=twist_filter,
+        twist_limit=twist_limit,
     )
-    result = replace(result, dtheta=dtheta)
-    return replace(result, findings=(*assess(result), cost(form, result, twist_limit)))
+    return replace(result, findings=measured(result, form, twist_limit))
+
+
+def measured(result: Design, form: Floats, twist_limit: float) -> tuple[Finding, ...]:
+    """What a design is worth; ``form`` is its `second_form`."""
+    return (*assess(result), cost(form, result, twist_limit))
 
 
 def sheet_angle(uv: Floats, surface: Surface) -> float:

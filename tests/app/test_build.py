@@ -310,3 +310,18 @@ def test_a_defect_of_ours_is_one_sentence_too(capsys, monkeypatch, job):
     assert code == 4
     assert "internal fault (ZeroDivisionError" in sentence
     assert Path(job).exists()
+
+
+def test_another_film_takes_the_metric_and_solves_the_twist_alone(job, built, tmp_path, capsys):
+    """What is written is what solving all anew gives, for any parameter that only the twist depends on."""
+    for change in ("sheet.gap_um=150", "sheet.twist_limit_deg=0.4", "sheet.edge_overdrive=true"):
+        fresh, taken = tmp_path / "fresh", tmp_path / "taken"
+        for out, how in ((fresh, ()), (taken, ("--metric", str(built)))):
+            main(["design", str(job), "--quiet", "--out", str(out), *how, "--set", change])
+        assert digests(taken) == digests(fresh)
+        found, expected = (json.loads((out / "manifest.json").read_text())["findings"] for out in (taken, fresh))
+        assert found == expected
+        assert digests(taken)["domains.csv"] != digests(built)["domains.csv"]
+    capsys.readouterr()
+    assert main(["design", str(job), "--out", str(taken), "--metric", str(built), "--set", "sheet.width_mm=3.1"]) == 2
+    assert "sheet.width_mm is 3.1, but" in capsys.readouterr().err

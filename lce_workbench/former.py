@@ -1,0 +1,55 @@
+"""The metric of a former output folder, for a job that differs in the twist alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from lce_solver.bounded import retwisted
+from lce_solver.design import measured
+from lce_solver.errors import InputError
+from lce_solver.twist import second_form
+from lce_solver.types import Design, Finding
+from lce_workbench.core import jobfile
+from lce_workbench.core.job import Job
+from lce_workbench.outputs import as_finding, read_design, read_manifest, require_unchanged
+
+OF_THE_JOB = {"domain_edge", "gap", "domain_size"}
+"""Findings that the design stage makes anew from the job itself."""
+
+
+def retwist(job: Job, inputs: Sequence[Mapping[str, Any]], former: Path) -> tuple[Design, tuple[Finding, ...]]:
+    """What solving ``job`` anew would give, in seconds: flat sheet and director of ``former``, and their twist.
+
+    Parameters
+    ----------
+    inputs : the files that the job names, with their digests.
+    former : output folder whose job is the same in all that the metric depends on.
+
+    Raises
+    ------
+    InputError
+        The folder is not ours, was changed, or its metric is of another target, material, size or solver.
+    """
+    require_unchanged(former, "design.npz")
+    manifest, plan = read_manifest(former), read_design(former / "design.npz")
+    _require_same_metric(jobfile.load(former / "job.toml"), job, former)
+    if [entry["sha256"] for entry in manifest["inputs"]] != [entry["sha256"] for entry in inputs]:
+        msg = f"a mesh or curve of the job is not the one that {former} was made from; design without --metric"
+        raise InputError(msg)
+    form = second_form(plan.surface, plan.uv)
+    plan = retwisted(plan, form, **job.sheet.twist)
+    fresh = {finding.check: finding for finding in measured(plan, form, job.sheet.twist_limit)}
+    del fresh["solver"]  # it tells of all starts, and only the winner was kept
+    kept = [as_finding(record) for record in manifest["findings"] if record["stage"] == "design"]
+    return plan, tuple(fresh.get(finding.check, finding) for finding in kept if finding.check not in OF_THE_JOB)
+
+
+def _require_same_metric(former: Job, job: Job, folder: Path) -> None:
+    """Refuse a job whose flat sheet or director would be another one than in ``folder``."""
+    ours = jobfile.metric_values(job)
+    for name, value in jobfile.metric_values(former).items():
+        if ours[name] != value:
+            msg = f"{name} is {ours[name]!r}, but {folder} was made for {value!r}; design without --metric"
+            raise InputError(msg)
