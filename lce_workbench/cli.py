@@ -10,7 +10,7 @@ import time
 import traceback
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import NoReturn
 
@@ -20,7 +20,7 @@ from lce_solver.types import Progress, silent
 from lce_workbench import ROOT, __version__, pipeline
 from lce_workbench.core import align, jobfile
 from lce_workbench.core.job import Job, Target
-from lce_workbench.outputs import read_manifest, told
+from lce_workbench.outputs import has_error, read_manifest, told
 
 DEMO = ROOT / "templates" / "demo.toml"
 
@@ -119,6 +119,8 @@ def _parser() -> Parser:
     ):
         sub = command(name, _stage, doc)
         sub.add_argument("folder", type=Path, metavar="DIR")
+    checked = command("verify", _verify, "Reads the written files back and compares them with the design.")
+    checked.add_argument("folder", type=Path, metavar="DIR")
     readings = command("align", _align, "From mark readings to shift, rotation, scale and the worst mismatch.")
     readings.add_argument("readings", type=Path, metavar="READINGS.csv")
     new = command("new", _new, "Writes a commented job file for a mesh.")
@@ -167,6 +169,22 @@ def _tell(args: argparse.Namespace, out: Path, names: list[str], code: int) -> N
             print(f"{record['severity']}: {record['message']}", file=sys.stderr)
     if not quiet:
         print(f"{', '.join(names)} written to {out}", file=sys.stderr)
+
+
+def _verify(args: argparse.Namespace) -> int:
+    from lce_workbench.verify import verify
+
+    progress, close = _progress(args)
+    try:
+        records = [asdict(finding) for finding in verify(args.folder, progress)]
+    finally:
+        close()
+    for record in records:
+        if getattr(args, "json", False):
+            print(json.dumps(record))
+        elif record["severity"] != "info" or not getattr(args, "quiet", False):
+            print(f"{record['severity'].value:8}{record['check']:20} {record['message']}")
+    return int(has_error(records))
 
 
 def _align(args: argparse.Namespace) -> int:
