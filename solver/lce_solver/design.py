@@ -11,6 +11,7 @@ from lce_solver.assess import assess
 from lce_solver.bounded import FOLLOWED, cost, retwisted
 from lce_solver.contest import compete
 from lce_solver.errors import InputError
+from lce_solver.feasible import bounded
 from lce_solver.geometry import area_vectors, face_areas
 from lce_solver.metric import Stop
 from lce_solver.plane import rectangle_angles, turn
@@ -96,7 +97,7 @@ def design(
 
 def measured(result: Design, form: Floats, twist_limit: float) -> tuple[Finding, ...]:
     """What a design is worth; ``form`` is its `second_form`."""
-    return (*assess(result), cost(form, result, twist_limit))
+    return (bounded(result.surface, result.material), *assess(result), cost(form, result, twist_limit))
 
 
 def sheet_angle(uv: Floats, surface: Surface) -> float:
