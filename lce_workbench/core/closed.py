@@ -29,7 +29,7 @@ def closed(design: Design, job: Job) -> Cell:
     domains, frame = partition(design), arrange(design.uv, job)
     shown = _shown(domains, job)
     channels = {plate: _channels(domains, plate, job.channels, shown) for plate in PLATES}
-    drawn = {plate: np.concatenate([*marks(frame, plate, job.marks).values()]) for plate in PLATES}
+    drawn = {plate: [r for rings in marks(frame, plate, job.marks).values() for r in rings] for plate in PLATES}
     return assemble(frame, job, domains, drawn, channels)
 
 
