@@ -139,6 +139,7 @@ def test_edge_overdrive_only_raises_the_edge(plan):
 def test_good_design_has_no_complaints():
     plan = design(hill(), LCE, 200.0, 0.1, starts=2)
     assert {found.check for found in plan.findings} == {
+        "length_bound",
         "solver",
         "stretch_rms",
         "stretch_max",
