@@ -7,41 +7,40 @@ of channels. Nothing is held but the boxes' numbers: the channels stream through
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from itertools import pairwise
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from lce_solver.types import Finding, Floats, Ints, Severity
-from lce_workbench.cad.brep import write_solid
+from lce_workbench.cad.brep import write_solids
 from lce_workbench.cad.part21 import PRODUCT, Part21, Product, real
 from lce_workbench.core.cell import LOOKS, Prism, domain_name
-from lce_workbench.core.channels import STEPS_PER_MM, Channels
+from lce_workbench.core.channels import BLOCK, STEPS_PER_MM, Channels
 from lce_workbench.core.domains import SIDE
 
-DIRECTION = "@0=DIRECTION('',({x:.15f},{y:.15f},0.));\n"
+DIRECTION = "@0=DIRECTION('',({x},{y},0.));\n"
 
 MAPPED = """\
-@0=CARTESIAN_POINT('',({x:%.9f},{y:%.9f},{z}));
-@1=AXIS2_PLACEMENT_3D('',@0,#11,{direction});
-@2=MAPPED_ITEM('',#{box:%d},@1);
+@0=CARTESIAN_POINT('',({x:f},{y:f},{z}));
+@1=AXIS2_PLACEMENT_3D('',@0,#11,#{direction:d});
+@2=MAPPED_ITEM('',#{box:d},@1);
 """
 
 MAP = """\
-@0=ADVANCED_BREP_SHAPE_REPRESENTATION('',(#13,#{solid}),#9);
+@0=ADVANCED_BREP_SHAPE_REPRESENTATION('',(#13,#{solid:d}),#9);
 @1=REPRESENTATION_MAP(#13,@0);
 """
 
 COMPONENT = """\
-@0=CARTESIAN_POINT('',({x:%.9f},{y:%.9f},{z}));
-@1=AXIS2_PLACEMENT_3D('',@0,#11,{direction});
+@0=CARTESIAN_POINT('',({x:f},{y:f},{z}));
+@1=AXIS2_PLACEMENT_3D('',@0,#11,#{direction:d});
 @2=ITEM_DEFINED_TRANSFORMATION('','',#13,@1);
-@3=(REPRESENTATION_RELATIONSHIP('','',#{box:%d},{representation})\
+@3=(REPRESENTATION_RELATIONSHIP('','',#{box:d},#{representation:d})\
 REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(@2)SHAPE_REPRESENTATION_RELATIONSHIP());
-@4=NEXT_ASSEMBLY_USAGE_OCCURRENCE('@4','','',{definition},#{part:%d},$);
+@4=NEXT_ASSEMBLY_USAGE_OCCURRENCE('@4','','',#{definition:d},#{part:d},$);
 @5=PRODUCT_DEFINITION_SHAPE('','',@4);
 @6=CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(@3,@5);
 """
@@ -73,35 +72,60 @@ def write_channels(out: Part21, parts: Iterable[Channels], gap: float, way: str)
     """
     root = out.product(out.name)
     boxes: dict[int, int] = {}
+    for part in _regrouped(parts):
+        block = _Block(part, gap)
+        products = WAYS[way](out, block, boxes)
+        out.place(products, root)
+        out.validate(products, *block.properties)
+
+
+def _regrouped(parts: Iterable[Channels]) -> Iterator[Channels]:
+    """The channels, `BLOCK` domains by their numbers at a time, so that the parts they came in leave no trace."""
+    held: list[Channels] = []
     for part in parts:
-        starts = [0, *(np.flatnonzero(np.diff(part.domain)) + 1).tolist(), len(part)]
-        for start, stop in pairwise(starts):
-            if start < stop:
-                run = _Run(part, slice(start, stop), gap)
-                product = WAYS[way](out, run, boxes)
-                out.place(product, root)
-                out.validate(product, *run.properties)
+        group = part.domain // BLOCK
+        for number in np.unique(group).tolist():
+            if held and held[0].domain[0] // BLOCK != number:
+                yield _joined(held)
+                held = []
+            rows = group == number
+            held.append(replace(part, **{name: getattr(part, name)[rows] for name in ("centre", "length", "domain")}))
+    if held:
+        yield _joined(held)
+
+
+def _joined(parts: Sequence[Channels]) -> Channels:
+    return replace(
+        parts[0],
+        **{name: np.concatenate([getattr(part, name) for part in parts]) for name in ("centre", "length", "domain")},
+    )
 
 
 @dataclass(frozen=True, eq=False)
-class _Run:
-    """The channels of one domain."""
+class _Block:
+    """The channels of some domains."""
 
     channels: Channels
-    rows: slice
     gap: float
 
-    @property
-    def domain(self) -> int:
-        return int(self.channels.domain[self.rows.start])
+    @cached_property
+    def domains(self) -> Ints:
+        """(n_d,) those that have channels."""
+        return np.unique(self.channels.domain)
+
+    @cached_property
+    def starts(self) -> Ints:
+        """(n_d,) first channel of each domain."""
+        return np.searchsorted(self.channels.domain, self.domains)
 
     @property
-    def name(self) -> str:
-        return domain_name(self.channels, self.domain)
+    def counts(self) -> Ints:
+        """(n_d,) channels of each domain."""
+        return np.diff(self.starts, append=len(self.channels))
 
     @property
-    def length(self) -> Floats:
-        return self.channels.length[self.rows]
+    def names(self) -> list[str]:
+        return [domain_name(self.channels, domain) for domain in self.domains.tolist()]
 
     @property
     def z(self) -> float:
@@ -110,27 +134,32 @@ class _Run:
         return side * self.gap / 2 + min(0.0, side * self.channels.depth)
 
     @property
-    def properties(self) -> tuple[float, float, Floats]:
-        """Volume, surface area and centroid of all of them."""
-        length, width, depth = self.length, self.channels.width, self.channels.depth
-        total = float(length.sum())
-        surface = 2 * (total * (width + depth) + len(length) * width * depth)
-        centre = length @ self.channels.centre[self.rows] / total
-        return total * width * depth, surface, np.array([*centre, self.z + depth / 2])
+    def properties(self) -> tuple[Floats, Floats, Floats]:
+        """Volume (n_d,), surface area (n_d,) and centroid (n_d, 3) of each domain's channels."""
+        length, width, depth = self.channels.length, self.channels.width, self.channels.depth
+        total = np.add.reduceat(length, self.starts)
+        surface = 2 * (total * (width + depth) + self.counts * width * depth)
+        centre = np.add.reduceat(self.channels.centre * length[:, None], self.starts) / total[:, None]
+        return total * width * depth, surface, np.insert(centre, 2, self.z + depth / 2, axis=1)
+
+    def split(self, items: Ints) -> list[Ints]:
+        """Items (n,) of the channels, domain by domain."""
+        return np.split(items, self.starts[1:])
 
     def columns(self, out: Part21) -> dict[str, Any]:
-        """Columns of the placements; the direction, which they share, is written."""
-        angle = float(self.channels.angle[self.domain])
-        direction = out.add(DIRECTION, x=math.cos(angle), y=math.sin(angle))
-        x, y = self.channels.centre[self.rows].T
-        return {"x": x, "y": y, "z": real(round(self.z, 12)), "direction": f"#{direction}"}
+        """Columns of the placements; the direction, which a domain's channels share, is written."""
+        angle = self.channels.angle[self.domains]
+        axis = {"x": [f"{x:.15f}" for x in np.cos(angle)], "y": [f"{y:.15f}" for y in np.sin(angle)]}
+        direction = np.repeat(out.rows(DIRECTION, len(angle), axis), self.counts)
+        x, y = self.channels.centre.T
+        return {"x": x, "y": y, "z": real(round(self.z, 12)), "direction": direction}
 
-    def boxes(self, out: Part21, known: dict[int, int], write: Callable[[Part21, Prism], int]) -> Ints:
+    def boxes(self, out: Part21, known: dict[int, int], write: Callable[[Part21, Sequence[Prism]], Ints]) -> Ints:
         """(n,) number of each channel's box; those whose length is new are written."""
-        steps, which = np.unique(np.rint(self.length * STEPS_PER_MM).astype(np.int64), return_inverse=True)
-        for step in steps.tolist():
-            if step not in known:
-                known[step] = write(out, _box(step, self.channels))
+        steps, which = np.unique(np.rint(self.channels.length * STEPS_PER_MM).astype(np.int64), return_inverse=True)
+        new = [step for step in steps.tolist() if step not in known]
+        if new:
+            known.update(zip(new, write(out, [_box(step, self.channels) for step in new]).tolist(), strict=True))
         return np.array([known[step] for step in steps.tolist()])[which]
 
 
@@ -141,38 +170,43 @@ def _box(steps: int, channels: Channels) -> Prism:
     return Prism(f"channel_{steps / 10:.1f}_um", ring, (), 0.0, channels.depth, *LOOKS["channel"])
 
 
-def _painted(out: Part21, box: Prism) -> int:
-    solid = write_solid(out, box)
-    out.paint(solid, box.colour, box.opacity)
-    return solid
+def _painted(out: Part21, boxes: Sequence[Prism]) -> Ints:
+    solids = write_solids(out, boxes)
+    out.paint(solids, *LOOKS["channel"])
+    return solids
 
 
-def _mapped(out: Part21, run: _Run, boxes: dict[int, int]) -> Product:
-    """The domain as one representation that maps boxes: three statements a channel."""
+def _mapped(out: Part21, block: _Block, boxes: dict[int, int]) -> list[Product]:
+    """Each domain as one representation that maps boxes: three statements a channel."""
 
-    def write(out: Part21, box: Prism) -> int:
-        return out.add(MAP, solid=_painted(out, box)) + 1
+    def write(out: Part21, new: Sequence[Prism]) -> Ints:
+        return out.rows(MAP, len(new), {"solid": _painted(out, new)}) + 1
 
-    maps = run.boxes(out, boxes, write)
-    first = out.rows(MAPPED, len(maps), {**run.columns(out), "box": maps})
-    return out.product(run.name, range(first + 2, first + 3 * len(maps), 3))
+    maps = block.boxes(out, boxes, write)
+    items = out.rows(MAPPED, len(maps), {**block.columns(out), "box": maps}) + 2
+    return out.products(block.names, block.split(items))
 
 
-def _assembly(out: Part21, run: _Run, boxes: dict[int, int]) -> Product:
-    """The domain as an assembly of boxes: seven statements a channel, for readers that do not know mapped items."""
+def _assembly(out: Part21, block: _Block, boxes: dict[int, int]) -> list[Product]:
+    """Each domain as an assembly of boxes: seven statements a channel, for readers that do not know mapped items."""
 
-    def write(out: Part21, box: Prism) -> int:
-        return out.product(box.name, [_painted(out, box)], "ADVANCED_BREP_SHAPE_REPRESENTATION").definition
+    def write(out: Part21, new: Sequence[Prism]) -> Ints:
+        names, solids = [box.name for box in new], _painted(out, new)[:, None]
+        made = out.products(names, list(solids), "ADVANCED_BREP_SHAPE_REPRESENTATION")
+        return np.array([product.definition for product in made])
 
-    parts = run.boxes(out, boxes, write)
-    columns = run.columns(out)
-    placed = out.next + PRODUCT.count("\n") + 1
-    product = out.product(run.name, range(placed, placed + 7 * len(parts), 7))
+    parts = block.boxes(out, boxes, write)
+    columns = block.columns(out)
+    placed = out.next + PRODUCT.count("\n") * len(block.domains) + 1
+    products = out.products(block.names, block.split(placed + COMPONENT.count("\n") * np.arange(len(parts))))
+    wholes = {
+        "definition": np.repeat([product.definition for product in products], block.counts),
+        "representation": np.repeat([product.representation for product in products], block.counts),
+    }
     shapes = parts - Product.DEFINITION + Product.REPRESENTATION
-    whole = {"definition": f"#{product.definition}", "representation": f"#{product.representation}"}
-    out.rows(COMPONENT, len(parts), {**columns, **whole, "part": parts, "box": shapes})
-    return product
+    out.rows(COMPONENT, len(parts), {**columns, **wholes, "part": parts, "box": shapes})
+    return products
 
 
-WAYS: dict[str, Callable[[Part21, _Run, dict[int, int]], Product]] = {"mapped": _mapped, "assembly": _assembly}
+WAYS: dict[str, Callable[[Part21, _Block, dict[int, int]], list[Product]]] = {"mapped": _mapped, "assembly": _assembly}
 """How the channels stand in the file."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import gzip
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
@@ -17,8 +17,9 @@ from typing import IO, Any
 
 import numpy as np
 
-from lce_solver.types import Floats
+from lce_solver.types import Floats, Ints
 from lce_workbench.core.cell import Colour
+from lce_workbench.core.digits import Texts, billionths, integers, lines
 
 HEADER = """\
 ISO-10303-21;
@@ -57,36 +58,50 @@ GLOBAL_UNIT_ASSIGNED_CONTEXT((#5,#6,#7))REPRESENTATION_CONTEXT('mm','3D'));
 END = "ENDSEC;\nEND-ISO-10303-21;\n"
 
 
-def rows_text(text: str, first: int, n: int, columns: Mapping[str, Any]) -> str:
+def rows_text(text: str, first: int, n: int, columns: Mapping[str, Any]) -> bytes:
     """``n`` rows of the statements of ``text``, one a line, numbered from ``first``.
 
     In ``text``, ``@k`` is the number of the row's own statement k and ``>k`` that of the row whose index is in the
-    column ``>``; ``{name:%d}`` is formatted from an array (n,), ``{name}`` is a constant text.
+    column ``>``; ``{name:d}`` is an integer and ``{name:f}`` a length [mm] with 9 decimals, both from an array (n,);
+    ``{name}`` is one text for all rows or a sequence of n.
     """
-    pattern, fields, size = _parsed(text)
-    for name, value in columns.items():
-        if isinstance(value, str):
-            pattern = pattern.replace(f"{{{name}}}", value)
-    own = first + size * np.arange(n)
-    other = first + size * columns[">"] if ">" in columns else own
-    numbers = {"@": own, ">": other}
-    flat: list[Any] = [None] * (n * len(fields))
-    for j, (kind, k, name) in enumerate(fields):
-        flat[j :: len(fields)] = (columns[name] if name else numbers[kind] + int(k)).tolist()
-    return (pattern * n) % tuple(flat)
+    pieces, size = _parsed(text)
+    starts = {"@": np.arange(first, first + n * size, size)}
+    starts[">"] = starts["@"][columns.get(">", slice(None))]
+
+    def column(kind: str, name: str) -> bytes | Texts:
+        if kind in "@>":
+            return integers(starts[kind] + int(name))
+        values = columns[name]
+        if kind == "d":
+            return integers(values)
+        if kind == "f":
+            return billionths(np.rint(values * 1e9).astype(np.int64))
+        return values.encode() if isinstance(values, str) else np.array([value.encode() for value in values])
+
+    made = {field: column(*field) for field in {piece for piece in pieces if not isinstance(piece, bytes)}}
+    return lines([piece if isinstance(piece, bytes) else made[piece] for piece in pieces])
 
 
-@lru_cache(maxsize=16)
-def _parsed(text: str) -> tuple[str, list[tuple[str, str, str]], int]:
-    """Pattern for the % operator, what its fields hold (``@`` or ``>`` and k, or a column), and the statements."""
-    fields = re.findall(r"([@>])(\d+)|\{(\w+):", text)
-    pattern = re.sub(r"[@>]\d+", "#%d", re.sub(r"\{\w+:([^}]+)\}", r"\1", text))
-    return pattern, fields, text.count("\n")
+@lru_cache(maxsize=32)
+def _parsed(text: str) -> tuple[tuple[bytes | tuple[str, str], ...], int]:
+    """What a row consists of, constant texts and fields (kind, name or k), and how many statements it has."""
+    pieces: list[bytes | tuple[str, str]] = []
+    for constant, mark, k, name, kind in re.findall(r"([^@>{]*)(?:([@>])(\d+)|\{(\w+):?(\w?)\}|$)", text):
+        pieces.append((constant + "#" * bool(mark)).encode())
+        if mark or name:
+            pieces.append((mark or kind or "s", k or name))
+    return tuple(piece for piece in pieces if piece), text.count("\n")
 
 
 def real(value: float) -> str:
     """A number with as many decimals as it needs, at most 15."""
     return f"{value:.15f}".rstrip("0")
+
+
+def references(numbers: Ints) -> str:
+    """``,#1,#2,#3``: further items of a list."""
+    return "".join(f",#{number}" for number in numbers.tolist())
 
 
 PRODUCT = """\
@@ -101,24 +116,24 @@ PRODUCT = """\
 
 OCCURRENCE = """\
 @0=ITEM_DEFINED_TRANSFORMATION('','',#13,#13);
-@1=(REPRESENTATION_RELATIONSHIP('','',#{part.representation},#{whole.representation})\
+@1=(REPRESENTATION_RELATIONSHIP('','',#{part_shape:d},#{whole_shape:d})\
 REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(@0)SHAPE_REPRESENTATION_RELATIONSHIP());
-@2=NEXT_ASSEMBLY_USAGE_OCCURRENCE('@2','{part.name}','',#{whole.definition},#{part.definition},$);
+@2=NEXT_ASSEMBLY_USAGE_OCCURRENCE('@2','{name}','',#{whole:d},#{part:d},$);
 @3=PRODUCT_DEFINITION_SHAPE('','',@2);
 @4=CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(@1,@3);
 """
 
 PROPERTIES = """\
-@0=PROPERTY_DEFINITION('geometric validation property','volume',#{shape});
-@1=MEASURE_REPRESENTATION_ITEM('volume measure',VOLUME_MEASURE({volume:.15E}),#18);
+@0=PROPERTY_DEFINITION('geometric validation property','volume',#{shape:d});
+@1=MEASURE_REPRESENTATION_ITEM('volume measure',VOLUME_MEASURE({volume}),#18);
 @2=REPRESENTATION('volume',(@1),#9);
 @3=PROPERTY_DEFINITION_REPRESENTATION(@0,@2);
-@4=PROPERTY_DEFINITION('geometric validation property','surface area',#{shape});
-@5=MEASURE_REPRESENTATION_ITEM('surface area measure',AREA_MEASURE({area:.15E}),#16);
+@4=PROPERTY_DEFINITION('geometric validation property','surface area',#{shape:d});
+@5=MEASURE_REPRESENTATION_ITEM('surface area measure',AREA_MEASURE({area}),#16);
 @6=REPRESENTATION('surface area',(@5),#9);
 @7=PROPERTY_DEFINITION_REPRESENTATION(@4,@6);
-@8=PROPERTY_DEFINITION('geometric validation property','centroid',#{shape});
-@9=CARTESIAN_POINT('centre point',({x:.12f},{y:.12f},{z:.12f}));
+@8=PROPERTY_DEFINITION('geometric validation property','centroid',#{shape:d});
+@9=CARTESIAN_POINT('centre point',({x},{y},{z}));
 @10=REPRESENTATION('centroid',(@9),#9);
 @11=PROPERTY_DEFINITION_REPRESENTATION(@8,@10);
 """
@@ -134,6 +149,8 @@ STYLE = """\
 @7=SURFACE_STYLE_USAGE(.BOTH.,@6);
 @8=PRESENTATION_STYLE_ASSIGNMENT((@7));
 """
+
+STYLED = "@0=STYLED_ITEM('color',(#{style}),#{item:d});\n"
 
 
 @dataclass(frozen=True)
@@ -170,7 +187,7 @@ class Part21:
     def __init__(self, file: IO[bytes], name: str) -> None:
         self._file, self.name = file, name
         self._styles: dict[tuple[Colour, float], int] = {}
-        self._styled: list[int] = []
+        self._styled: list[Ints] = []
         self._text(HEADER.format(name) + COMMON)
         self.next = COMMON.count(";\n") + 1
 
@@ -184,42 +201,58 @@ class Part21:
         self.next += statements.count("\n")
         return first
 
-    def rows(self, text: str, n: int, columns: Mapping[str, Any]) -> int:
-        """Write ``n`` rows of statements in bulk, see `rows_text`; return the number of the first statement."""
-        first = self.next
-        self._text(rows_text(text, first, n, columns))
-        self.next += n * text.count("\n")
-        return first
+    def rows(self, text: str, n: int, columns: Mapping[str, Any]) -> Ints:
+        """Write ``n`` rows of statements in bulk, see `rows_text`; return the number of each row's first statement."""
+        first, size = self.next, text.count("\n")
+        self._file.write(rows_text(text, first, n, columns))
+        self.next += n * size
+        return np.arange(first, self.next, size)
 
-    def product(self, name: str, items: Iterable[int] = (), kind: str = "SHAPE_REPRESENTATION") -> Product:
-        """Write a product that consists of ``items`` and the origin."""
-        first = self.add(PRODUCT, name=name, kind=kind, refs="".join(f",#{item}" for item in items))
-        return Product(name, first)
+    def product(self, name: str) -> Product:
+        """Write a product without a shape of its own: an assembly."""
+        return self.products([name], [np.empty(0, dtype=np.int64)])[0]
 
-    def place(self, part: Product, whole: Product) -> None:
-        """Make ``part`` a component of ``whole``, in the same coordinates."""
-        self.add(OCCURRENCE, part=part, whole=whole)
+    def products(
+        self, names: Sequence[str], items: Sequence[Ints], kind: str = "SHAPE_REPRESENTATION"
+    ) -> list[Product]:
+        """Write products; each consists of its ``items`` and the origin."""
+        listed = [references(each) for each in items]
+        first = self.rows(PRODUCT, len(names), {"name": names, "kind": kind, "refs": listed})
+        return [Product(name, at) for name, at in zip(names, first.tolist(), strict=True)]
 
-    def validate(self, product: Product, volume: float, area: float, centroid: Floats) -> None:
-        """State volume [mm3], surface area [mm2] and centroid (3,) [mm], for the reader to compare with his own."""
-        x, y, z = centroid
-        self.add(PROPERTIES, shape=product.shape, volume=volume, area=area, x=x, y=y, z=z)
+    def place(self, parts: Sequence[Product], whole: Product) -> None:
+        """Make ``parts`` components of ``whole``, in the same coordinates."""
+        n = len(parts)
+        columns = {
+            "name": [part.name for part in parts],
+            "part": np.array([part.definition for part in parts]),
+            "part_shape": np.array([part.representation for part in parts]),
+            "whole": np.full(n, whole.definition),
+            "whole_shape": np.full(n, whole.representation),
+        }
+        self.rows(OCCURRENCE, n, columns)
 
-    def paint(self, item: int, colour: Colour, opacity: float) -> None:
-        """Give a solid its colour (sRGB)."""
+    def validate(self, parts: Sequence[Product], volume: Floats, area: Floats, centroid: Floats) -> None:
+        """State volumes (n,) [mm3], surface areas (n,) [mm2] and centroids (n, 3) [mm], for a reader to compare."""
+        measures = {name: [f"{v:.15E}" for v in values] for name, values in (("volume", volume), ("area", area))}
+        places = {name: [f"{v:.12f}" for v in values] for name, values in zip("xyz", centroid.T, strict=True)}
+        shapes = np.array([part.shape for part in parts])
+        self.rows(PROPERTIES, len(parts), {**measures, **places, "shape": shapes})
+
+    def paint(self, items: Ints, colour: Colour, opacity: float) -> None:
+        """Give solids (n,) their colour (sRGB)."""
         look = colour, opacity
         if look not in self._styles:
             red, green, blue = colour
             style = self.add(STYLE, red=red, green=green, blue=blue, clear=1 - opacity)
             self._styles[look] = style + STYLE.count("\n") - 1
-        self._styled.append(
-            self.add("@0=STYLED_ITEM('color',(#{style}),#{item});\n", style=self._styles[look], item=item)
-        )
+        style = str(self._styles[look])
+        self._styled.append(self.rows(STYLED, len(items), {"style": style, "item": items}))
 
     def close(self) -> None:
         """Write the end."""
         if self._styled:
-            refs = ",".join(f"#{item}" for item in self._styled)
+            refs = references(np.concatenate(self._styled))[1:]
             self.add("@0=MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',({refs}),#9);\n", refs=refs)
         self._text(END)
 

@@ -6,9 +6,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
+
 from lce_solver.errors import EnvironmentFault
 from lce_solver.types import Progress, silent
-from lce_workbench.cad.brep import write_solid
+from lce_workbench.cad.brep import write_solids
 from lce_workbench.cad.glb import write_glb
 from lce_workbench.cad.instances import write_channels
 from lce_workbench.cad.part21 import Part21, Product, part21
@@ -76,15 +78,15 @@ def write_step(prisms: Sequence[Prism], path: Path) -> None:
         for prism in prisms:
             if prism.group not in parents:
                 parents[prism.group] = out.product(prism.group)
-                out.place(parents[prism.group], root)
-            out.place(_product(out, prism), parents[prism.group])
+                out.place([parents[prism.group]], root)
+            out.place([_product(out, prism)], parents[prism.group])
 
 
 def _product(out: Part21, prism: Prism) -> Product:
-    body = write_solid(out, prism)
-    product = out.product(prism.name, [body], "ADVANCED_BREP_SHAPE_REPRESENTATION")
+    body = write_solids(out, [prism])
+    (product,) = out.products([prism.name], [body], "ADVANCED_BREP_SHAPE_REPRESENTATION")
     out.paint(body, prism.colour, prism.opacity)
-    out.validate(product, prism.volume, prism.surface, prism.centroid)
+    out.validate([product], *(np.array([value]) for value in (prism.volume, prism.surface, prism.centroid)))
     return product
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from lce_workbench.core.digits import Texts, integers, lines
 from lce_workbench.core.mask import Mask, Nanometres
-from lce_workbench.export.digits import Texts, integers, lines
 
 LAYERS = {
     "CHANNELS": "CHAN",

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
+from lce_workbench.core.digits import Texts, hexadecimals, lines, thousandths
 from lce_workbench.core.mask import LAYERS, Mask, Nanometres
-from lce_workbench.export.digits import Texts, hexadecimals, lines, thousandths
 
 MICRONS = 13
 """$INSUNITS of um."""

@@ -15,7 +15,7 @@ from cad.readers import valid, volume
 from OCP.TopLoc import TopLoc_Location
 from sheets import SPEC, b20
 
-from lce_workbench.cad.brep import write_solid
+from lce_workbench.cad.brep import write_solids
 from lce_workbench.cad.instances import estimate, write_channels
 from lce_workbench.cad.part21 import part21
 from lce_workbench.cad.reread import channels_in, solids_in
@@ -101,7 +101,7 @@ def test_holes_cost_in_proportion(benchmark, channels, tmp_path):
         prism = Prism("land", 20 * np.array([(-1.0, -1), (1, -1), (1, 1), (-1, 1)]), rings, 0.0, 6e-4, (0.0, 0.0, 0.0))
         start = time.process_time()
         with part21(tmp_path / "land.step") as out:
-            write_solid(out, prism)
+            write_solids(out, [prism])
         return time.process_time() - start
 
     seconds(100)

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from sheets import PLAIN, both_masks, design
 
+from lce_workbench.core.digits import billionths, hexadecimals, integers, thousandths
 from lce_workbench.core.domains import partition
 from lce_workbench.core.mask import LAYERS, Mask
 from lce_workbench.export import EXPORTERS, cif, dxf, oasis
-from lce_workbench.export.digits import hexadecimals, integers, thousandths
 
 POLYLINES = 2
 """KLayout's way of reading DXF where closed polylines are polygons and nothing is merged."""
@@ -119,5 +119,7 @@ def test_digits_are_those_of_the_formatter():
     for v in (values, -values):
         assert [t.replace(b"\0", b"").decode() for t in thousandths(v).tolist()] == [f"{x / 1000:.3f}" for x in v + 0]
         assert [t.replace(b"\0", b"").decode() for t in integers(v).tolist()] == [f"{x}" for x in v]
+    for v in (far := np.concatenate([values.astype(np.int64) * 997, edges])), -far:
+        assert [t.replace(b"\0", b"").decode() for t in billionths(v).tolist()] == [f"{x / 1e9:.9f}" for x in v + 0]
     many = np.array([1, 15, 16, 255, 0x1F2E3D, 2**32 - 1])
     assert [t.replace(b"\0", b"").decode() for t in hexadecimals(many).tolist()] == [f"{x:X}" for x in many]

@@ -1,4 +1,4 @@
-"""Decimal text of integers in bulk: three lookups a number instead of a call of a formatter.
+"""Decimal text of integers in bulk: a few lookups a number instead of a call of a formatter.
 
 A number is cut into groups of three digits; each group is four bytes from a table. Bytes that a shorter number leaves
 over are NUL, and go when the rows become text.
@@ -42,12 +42,21 @@ def integers(values: NDArray[np.int32]) -> Texts:
     )
 
 
+def billionths(values: NDArray[np.int64]) -> Texts:
+    """``%.9f`` of values / 1e9, |values| < 1e12: picometres in mm."""
+    whole, rest = (part.astype(np.int32) for part in np.divmod(np.abs(values), 1_000_000_000))
+    high, middle, low, _ = _groups(rest)
+    sign = (values < 0) * np.int32(MINUS)
+    return _texts(whole + sign, high + np.int32(POINT), middle + np.int32(PADDED), low + np.int32(PADDED))
+
+
 def hexadecimals(values: NDArray[np.int64]) -> Texts:
     """``%X`` of values (n,) from 1 to 2^32 - 1."""
     shifts = np.arange(28, -4, -4)
     digits = HEX[(values[:, None] >> shifts) & 15]
     digits[values[:, None] >> shifts == 0] = 0
-    return digits.view("S8")[:, 0]
+    found: Texts = digits.view("S8")[:, 0]
+    return found
 
 
 def lines(pieces: Sequence[bytes | Texts]) -> bytes:
@@ -68,5 +77,6 @@ def _groups(values: NDArray[np.int32]) -> tuple[NDArray[np.int32], ...]:
 
 
 def _texts(*groups: NDArray[np.int32]) -> Texts:
-    """Texts of 12 bytes from indices into `GROUPS`."""
-    return np.stack([GROUPS[group] for group in groups], axis=-1).view("S12")[..., 0]
+    """Texts of four bytes a group, from indices into `GROUPS`."""
+    found: Texts = np.stack([GROUPS[group] for group in groups], axis=-1).view(f"S{4 * len(groups)}")[..., 0]
+    return found
