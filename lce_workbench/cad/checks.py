@@ -13,12 +13,13 @@ from lce_solver.types import Finding, Floats, Severity
 from lce_workbench.cad.reread import channels_in, solids_in, tally, volume_of
 from lce_workbench.cad.solids import solid
 from lce_workbench.cad.step import CHANNEL_FILES, FILES, stored_as
-from lce_workbench.core.cell import Cell, Prism
+from lce_workbench.core.cell import Cell
 from lce_workbench.core.channels import Channels
 from lce_workbench.core.domains import PLATES, Plate
 from lce_workbench.core.frame import Frame
 from lce_workbench.core.job import Job
 from lce_workbench.core.marks import MARKS
+from lce_workbench.core.prism import Prism
 from lce_workbench.core.units import NM, UM
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lce_workbench.cad.solids import solid
-from lce_workbench.core.cell import Prism
+from lce_workbench.core.prism import Prism
 
 if TYPE_CHECKING:
     import cadquery as cq

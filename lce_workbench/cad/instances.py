@@ -17,9 +17,10 @@ import numpy as np
 from lce_solver.types import Finding, Floats, Ints, Severity
 from lce_workbench.cad.brep import write_solids
 from lce_workbench.cad.part21 import PRODUCT, Part21, Product, real
-from lce_workbench.core.cell import LOOKS, Prism, domain_name
+from lce_workbench.core.cell import LOOKS, domain_name
 from lce_workbench.core.channels import BLOCK, STEPS_PER_MM, Channels
 from lce_workbench.core.domains import SIDE
+from lce_workbench.core.prism import Prism
 
 DIRECTION = "@0=DIRECTION('',({x},{y},0.));\n"
 

@@ -18,8 +18,8 @@ from typing import IO, Any
 import numpy as np
 
 from lce_solver.types import Floats, Ints
-from lce_workbench.core.cell import Colour
 from lce_workbench.core.digits import Texts, billionths, integers, lines
+from lce_workbench.core.prism import Colour
 
 HEADER = """\
 ISO-10303-21;

@@ -2,39 +2,83 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import pairwise
 from math import isclose
 from typing import TYPE_CHECKING
 
 from lce_solver.errors import LceError
-from lce_solver.types import Floats
-from lce_workbench.core.cell import Prism
+from lce_workbench.core.polyhedron import Polyhedron, polyhedron
+from lce_workbench.core.prism import Prism
 
 if TYPE_CHECKING:
     import cadquery as cq
+    from OCP.gp import gp_Pnt
+    from OCP.TopoDS import TopoDS_Edge
+
+TOLERANCE = 1e-7
+"""OpenCASCADE's own [mm]."""
 
 VOLUME_TOLERANCE = 1e-9
 """Largest accepted relative difference between a kernel's volume and the prism's own."""
 
 
 def solid(prism: Prism) -> cq.Solid:
-    """Extrude the face with its holes; nothing is cut.
+    """The prism from its faces; nothing is cut or sewn.
 
     Raises
     ------
     LceError
         The kernel's volume is not the prism's.
     """
-    import cadquery as cq
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
-    from OCP.gp import gp_Dir, gp_Pln, gp_Pnt
-
-    outer, *holes = (_wire(ring, prism.z0).wrapped for ring in prism.rings)
-    builder = BRepBuilderAPI_MakeFace(gp_Pln(gp_Pnt(0, 0, prism.z0), gp_Dir(0, 0, 1)), outer, True)
-    for hole in holes:  # some 50 times faster than Face.makeFromWires, which repairs what is right already
-        builder.Add(hole)
-    shape = cq.Solid.extrudeLinear(cq.Face(builder.Face()), cq.Vector(0, 0, prism.z1 - prism.z0))
+    shape = shell([prism])
     require_volume(prism, shape.Volume())
     return shape
+
+
+def shell(stack: Sequence[Prism]) -> cq.Solid:
+    """The solid inside the surface of prisms that stand on each other, see `polyhedron`.
+
+    Edges are shared by the faces that meet there, so the shell is closed as it is made: some 50 times faster than
+    extrusion or sewing.
+    """
+    import cadquery as cq
+    from OCP.BRep import BRep_Builder
+    from OCP.Geom import Geom_Plane
+    from OCP.gp import gp_Dir, gp_Pnt
+    from OCP.TopAbs import TopAbs_REVERSED
+    from OCP.TopoDS import TopoDS_Face, TopoDS_Shell, TopoDS_Solid, TopoDS_Wire
+
+    made, builder = polyhedron(stack), BRep_Builder()
+    shell, body = TopoDS_Shell(), TopoDS_Solid()
+    builder.MakeShell(shell)
+    builder.MakeSolid(body)
+    points = [gp_Pnt(*point) for point in made.points.tolist()]
+    edges = _edges(made, points)
+    for loops, normal in zip(made.faces, made.normals.tolist(), strict=True):
+        face = TopoDS_Face()
+        builder.MakeFace(face, Geom_Plane(points[loops[0][0]], gp_Dir(*normal)), TOLERANCE)
+        for loop in loops:
+            wire = TopoDS_Wire()
+            builder.MakeWire(wire)
+            for a, b in pairwise([*loop.tolist(), int(loop[0])]):
+                builder.Add(wire, edges[a, b] if a < b else edges[b, a].Oriented(TopAbs_REVERSED))
+            wire.Closed(True)
+            builder.Add(face, wire)
+        builder.Add(shell, face)
+    shell.Closed(True)
+    builder.Add(body, shell)
+    return cq.Solid(body)
+
+
+def _edges(made: Polyhedron, points: Sequence[gp_Pnt]) -> dict[tuple[int, int], TopoDS_Edge]:
+    """The edge between each two points that a face joins, the smaller number first."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeVertex
+
+    vertices = [BRepBuilderAPI_MakeVertex(point).Vertex() for point in points]
+    loops = (loop for face in made.faces for loop in face)
+    pairs = {(min(pair), max(pair)) for loop in loops for pair in pairwise([*loop.tolist(), int(loop[0])])}
+    return {(a, b): BRepBuilderAPI_MakeEdge(vertices[a], vertices[b]).Edge() for a, b in pairs}
 
 
 def require_volume(prism: Prism, volume: float) -> None:
@@ -45,9 +89,3 @@ def require_volume(prism: Prism, volume: float) -> None:
             "this is a fault of the program, please report it with the job file"
         )
         raise LceError(msg)
-
-
-def _wire(ring: Floats, z: float) -> cq.Wire:
-    import cadquery as cq
-
-    return cq.Wire.makePolygon([cq.Vector(x, y, z) for x, y in ring.tolist()], close=True)

@@ -14,10 +14,11 @@ from lce_workbench.cad.brep import write_solids
 from lce_workbench.cad.glb import write_glb
 from lce_workbench.cad.instances import write_channels
 from lce_workbench.cad.part21 import Part21, Product, part21
-from lce_workbench.core.cell import Cell, Prism
+from lce_workbench.core.cell import Cell
 from lce_workbench.core.channels import Channels
 from lce_workbench.core.domains import PLATES, Plate
 from lce_workbench.core.job import Job
+from lce_workbench.core.prism import Prism
 
 FILES: dict[str, Callable[[Cell], Sequence[Prism]]] = {
     "cell.step": lambda cell: cell.parts,

@@ -24,10 +24,11 @@ from lce_solver.errors import InputError
 from lce_solver.topology import boundary_loops
 from lce_solver.types import Floats
 from lce_workbench.core.channels import ChannelField, Channels, corners
-from lce_workbench.core.domains import PLATES, SIDE, Domains, Plate, signed_area
+from lce_workbench.core.domains import PLATES, SIDE, Domains, Plate
 from lce_workbench.core.frame import Frame
 from lce_workbench.core.job import Job
 from lce_workbench.core.merge import merged
+from lce_workbench.core.prism import Colour, Prism
 from lce_workbench.core.units import UM
 
 MAX_SOLIDS = 10_000
@@ -42,8 +43,6 @@ MEGABYTES = 8e-3
 MAX_CUT = 300
 """Channels cut into one land; the time to write and read a face grows with the square of its holes."""
 
-Colour = tuple[float, float, float]
-
 LOOKS: dict[str, tuple[Colour, float]] = {
     "glass": ((0.66, 0.84, 0.90), 0.25),
     "epoxy": ((0.93, 0.79, 0.42), 0.30),
@@ -53,60 +52,6 @@ LOOKS: dict[str, tuple[Colour, float]] = {
     "channel": ((0.16, 0.44, 0.72), 1.0),
 }
 """Material -> colour (red, green, blue in [0, 1], sRGB) and opacity."""
-
-
-@dataclass(frozen=True, eq=False)
-class Prism:
-    """A polygon with holes between two heights. Rings that run the other way round are turned."""
-
-    name: str
-    """ASCII; channels of one domain share a name and become one product."""
-    outline: Floats
-    """(n, 2) counter-clockwise [mm]."""
-    holes: tuple[Floats, ...]
-    """Each (k, 2), clockwise, as both CAD kernels need them [mm]."""
-    z0: float
-    """Lower face [mm]."""
-    z1: float
-    """Upper face [mm]."""
-    colour: Colour
-    opacity: float = 1.0
-    group: str = ""
-    """The assembly that it belongs to; "" is the cell itself."""
-
-    def __post_init__(self) -> None:
-        if not self.z1 > self.z0:
-            msg = f"{self.name}: z1 = {self.z1} must lie above z0 = {self.z0}"
-            raise ValueError(msg)
-        object.__setattr__(self, "outline", _turned(self.outline, 1))
-        object.__setattr__(self, "holes", tuple(_turned(hole, -1) for hole in self.holes))
-
-    @property
-    def rings(self) -> tuple[Floats, ...]:
-        """The outline and the holes."""
-        return (self.outline, *self.holes)
-
-    @property
-    def area(self) -> float:
-        """Area of the cross-section [mm2]."""
-        return float(sum(_moments(ring)[0] for ring in self.rings))
-
-    @property
-    def volume(self) -> float:
-        """[mm3]."""
-        return self.area * (self.z1 - self.z0)
-
-    @property
-    def surface(self) -> float:
-        """Area of all faces [mm2]."""
-        edges = (ring - np.roll(ring, 1, axis=0) for ring in self.rings)
-        return 2 * self.area + (self.z1 - self.z0) * float(sum(np.linalg.norm(e, axis=1).sum() for e in edges))
-
-    @property
-    def centroid(self) -> Floats:
-        """(3,) centre of mass [mm]."""
-        x, y = np.sum([_moments(ring)[1:] for ring in self.rings], axis=0) / self.area
-        return np.array([x, y, (self.z0 + self.z1) / 2])
 
 
 @dataclass(frozen=True, eq=False)
@@ -262,19 +207,3 @@ def domain_name(channels: Channels, domain: int) -> str:
 def _rows(channels: Channels, domain: int) -> slice:
     """Rows of the channels of one domain."""
     return slice(*map(int, np.searchsorted(channels.domain, [domain, domain + 1])))
-
-
-def _turned(ring: Floats, sign: int) -> Floats:
-    """The ring, counter-clockwise for ``sign`` +1, clockwise for -1; read-only."""
-    turned = np.array(ring if signed_area(ring[None])[0] * sign > 0 else ring[::-1])
-    turned.setflags(write=False)
-    return turned
-
-
-def _moments(ring: Floats) -> Floats:
-    """Signed area and first moments (3,) of a polygon, by the shoelace formula about its first corner."""
-    p = ring - ring[0]
-    q = np.roll(p, -1, axis=0)
-    cross = p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
-    area = cross.sum() / 2
-    return np.array([area, *(cross @ (p + q) / 6 + area * ring[0])])

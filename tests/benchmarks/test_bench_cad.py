@@ -20,8 +20,9 @@ from lce_workbench.cad.instances import estimate, write_channels
 from lce_workbench.cad.part21 import part21
 from lce_workbench.cad.reread import channels_in, solids_in
 from lce_workbench.cad.solids import solid
-from lce_workbench.core.cell import Prism, select
+from lce_workbench.core.cell import select
 from lce_workbench.core.channels import corners, hatch
+from lce_workbench.core.prism import Prism
 
 GAP = 0.1
 

@@ -12,7 +12,7 @@ from OCP.TopTools import TopTools_ListOfShape
 from lce_solver.errors import LceError
 from lce_workbench.cad.solids import VOLUME_TOLERANCE, require_volume, solid
 from lce_workbench.cad.step import CHANNEL_FILES, FILES
-from lce_workbench.core.cell import Prism
+from lce_workbench.core.prism import Prism
 
 
 def test_both_kernels_agree_on_every_part(sample, freecad):

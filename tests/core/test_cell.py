@@ -6,13 +6,14 @@ import pytest
 from cad.cad_sample import cell, cross, domains, hatched, job
 
 from lce_solver.errors import InputError
-from lce_workbench.core.cell import LOOKS, MAX_CUT, MAX_SOLIDS, Prism, assemble, choose
+from lce_workbench.core.cell import LOOKS, MAX_CUT, MAX_SOLIDS, assemble, choose
 from lce_workbench.core.channels import Channels
 from lce_workbench.core.domains import PLATES, SIDE, signed_area
 from lce_workbench.core.frame import arrange
 from lce_workbench.core.job import Job
 from lce_workbench.core.marks import marks
 from lce_workbench.core.merge import merged
+from lce_workbench.core.prism import Prism
 
 WHITE = (1.0, 1.0, 1.0)
 
