@@ -19,7 +19,7 @@ from lce_workbench.core.domains import PLATES, Plate
 from lce_workbench.core.frame import Frame
 from lce_workbench.core.job import Job
 from lce_workbench.core.marks import MARKS
-from lce_workbench.core.prism import Prism
+from lce_workbench.core.prism import Prism, bodies, together
 from lce_workbench.core.units import NM, UM
 
 if TYPE_CHECKING:
@@ -47,9 +47,10 @@ def check(
     ----------
     channels : the channels that were written as solids.
     """
-    shapes = {part.name: solid(part) for part in (*cell.parts, *cell.combs)}
+    stacks = bodies((*cell.parts, *cell.combs))
+    shapes = {name: solid(stack) for name, stack in stacks.items()}
     found = [
-        _kernel((*cell.parts, *cell.combs), shapes),
+        _kernel(stacks, shapes),
         _interference(cell.parts, shapes),
         _gap(shapes, job),
         _marks(cell, frame),
@@ -60,20 +61,21 @@ def check(
     return tuple(found)
 
 
-def _kernel(prisms: Sequence[Prism], shapes: Mapping[str, cq.Solid]) -> Finding:
-    """Volume, centroid and box of every solid against its prism's own, relative to volume and size; and validity."""
-    worst, where = max((_deviation(prism, shapes[prism.name]), prism.name) for prism in prisms)
-    return judged("cad_kernel", f"{len(prisms)} solids differ from their prisms by up to", worst, SAME, where=where)
+def _kernel(stacks: Mapping[str, Sequence[Prism]], shapes: Mapping[str, cq.Solid]) -> Finding:
+    """Volume, centroid and box of every solid against its prisms' own, relative to volume and size; and validity."""
+    worst, where = max((_deviation(stack, shapes[name]), name) for name, stack in stacks.items())
+    return judged("cad_kernel", f"{len(stacks)} solids differ from their prisms by up to", worst, SAME, where=where)
 
 
-def _deviation(prism: Prism, shape: cq.Solid) -> float:
+def _deviation(stack: Sequence[Prism], shape: cq.Solid) -> float:
     """Largest relative difference; infinite if the solid is not valid."""
     box, centre = shape.BoundingBox(), shape.Center()
-    low, high = prism.outline.min(axis=0), prism.outline.max(axis=0)
-    size = float(max(high - low))
-    want = np.array([*low, prism.z0, *high, prism.z1, *prism.centroid])
+    outlines = np.concatenate([outline for prism in stack for outline in (prism.outline, prism.top)])
+    low, high = outlines.min(axis=0), outlines.max(axis=0)
+    volume, centroid = together(stack)
+    want = np.array([*low, stack[0].z0, *high, stack[-1].z1, *centroid])
     have = np.array([box.xmin, box.ymin, box.zmin, box.xmax, box.ymax, box.zmax, centre.x, centre.y, centre.z])
-    off = max(float(np.abs(have - want).max()) / size, abs(shape.Volume() / prism.volume - 1))
+    off = max(float(np.abs(have - want).max() / max(high - low)), abs(shape.Volume() / volume - 1))
     return off if shape.isValid() else float("inf")
 
 
@@ -82,7 +84,7 @@ def _interference(parts: Sequence[Prism], shapes: Mapping[str, cq.Solid]) -> Fin
     shared = [
         (shapes[a.name].intersect(shapes[b.name]).Volume(), f"{a.name} and {b.name}")
         for a, b in combinations(parts, 2)
-        if min(a.z1, b.z1) - max(a.z0, b.z0) > NM and _boxes_meet(a, b)
+        if a.name != b.name and min(a.z1, b.z1) - max(a.z0, b.z0) > NM and _boxes_meet(a, b)
     ]
     worst, where = max(shared, default=(0.0, ""))
     return judged("cad_interference", "the volume that two parts share is up to", worst, 0.0, unit="mm3", where=where)
@@ -127,9 +129,10 @@ def _centre(land: Prism, corner: Floats) -> Floats:
 
 def _parts_in(path: Path, prisms: Sequence[Prism]) -> Finding:
     """Number and total volume of the solids that OpenCASCADE finds in a file."""
+    count = len(bodies(prisms))
     if max(len(prism.holes) for prism in prisms) <= HOLES:
-        return _compared(path, len(prisms), sum(prism.volume for prism in prisms))
-    return _counted(path, "solids", tally(path)["solids"], len(prisms))
+        return _compared(path, count, sum(prism.volume for prism in prisms))
+    return _counted(path, "solids", tally(path)["solids"], count)
 
 
 def _channels_in(parts: Iterable[Channels], path: Path, way: str) -> Finding:

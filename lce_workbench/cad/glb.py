@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lce_workbench.cad.solids import solid
-from lce_workbench.core.prism import Prism
+from lce_workbench.core.prism import Prism, bodies
 
 if TYPE_CHECKING:
     import cadquery as cq
@@ -41,14 +41,15 @@ def write_glb(prisms: Sequence[Prism], path: Path) -> None:
 
 
 def assembly(name: str, prisms: Sequence[Prism]) -> cq.Assembly:
-    """Prisms of one group become a sub-assembly."""
+    """Bodies of one group become a sub-assembly."""
     import cadquery as cq
 
     root = cq.Assembly(name=name)
     parents = {"": root}
-    for prism in prisms:
-        if prism.group not in parents:
-            root.add(cq.Assembly(name=prism.group))
-            parents[prism.group] = root.children[-1]
-        parents[prism.group].add(solid(prism), name=prism.name, color=cq.Color(*prism.colour, prism.opacity))
+    for label, stack in bodies(prisms).items():
+        group = stack[0].group
+        if group not in parents:
+            root.add(cq.Assembly(name=group))
+            parents[group] = root.children[-1]
+        parents[group].add(solid(stack), name=label, color=cq.Color(*stack[0].colour, stack[0].opacity))
     return root

@@ -20,6 +20,7 @@ from lce_workbench.cad.part21 import PRODUCT, Part21, Product, real
 from lce_workbench.core.cell import LOOKS, domain_name
 from lce_workbench.core.channels import BLOCK, STEPS_PER_MM, Channels
 from lce_workbench.core.domains import SIDE
+from lce_workbench.core.polyhedron import polyhedron
 from lce_workbench.core.prism import Prism
 
 DIRECTION = "@0=DIRECTION('',({x},{y},0.));\n"
@@ -155,33 +156,35 @@ class _Block:
         x, y = self.channels.centre.T
         return {"x": x, "y": y, "z": real(round(self.z, 12)), "direction": direction}
 
-    def boxes(self, out: Part21, known: dict[int, int], write: Callable[[Part21, Sequence[Prism]], Ints]) -> Ints:
+    def boxes(self, out: Part21, known: dict[int, int], write: Callable[[Part21, Sequence[int]], Ints]) -> Ints:
         """(n,) number of each channel's box; those whose length is new are written."""
         steps, which = np.unique(np.rint(self.channels.length * STEPS_PER_MM).astype(np.int64), return_inverse=True)
         new = [step for step in steps.tolist() if step not in known]
         if new:
-            known.update(zip(new, write(out, [_box(step, self.channels) for step in new]).tolist(), strict=True))
+            known.update(zip(new, write(out, new).tolist(), strict=True))
         return np.array([known[step] for step in steps.tolist()])[which]
 
 
-def _box(steps: int, channels: Channels) -> Prism:
-    """The channel of a length, about the origin and standing on z = 0."""
-    x, y = steps / STEPS_PER_MM / 2, channels.width / 2
-    ring = np.array([(-x, -y), (x, -y), (x, y), (-x, y)])
-    return Prism(f"channel_{steps / 10:.1f}_um", ring, (), 0.0, channels.depth, *LOOKS["channel"])
-
-
-def _painted(out: Part21, boxes: Sequence[Prism]) -> Ints:
-    solids = write_solids(out, boxes)
+def _painted(out: Part21, block: _Block, steps: Sequence[int]) -> Ints:
+    """Write a box for each length, about the origin and standing on z = 0."""
+    x, y = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]).T * block.channels.width / 2
+    box = polyhedron([Prism("box", np.column_stack([x, y]), (), 0.0, block.channels.depth, *LOOKS["channel"])])
+    sides = np.sign(box.points[:, 0]) / (2 * STEPS_PER_MM)
+    boxes = [replace(box, points=np.column_stack([step * sides, box.points[:, 1:]])) for step in steps]
+    solids = write_solids(out, [_box_name(step) for step in steps], boxes)
     out.paint(solids, *LOOKS["channel"])
     return solids
+
+
+def _box_name(steps: int) -> str:
+    return f"channel_{steps / 10:.1f}_um"
 
 
 def _mapped(out: Part21, block: _Block, boxes: dict[int, int]) -> list[Product]:
     """Each domain as one representation that maps boxes: three statements a channel."""
 
-    def write(out: Part21, new: Sequence[Prism]) -> Ints:
-        return out.rows(MAP, len(new), {"solid": _painted(out, new)}) + 1
+    def write(out: Part21, new: Sequence[int]) -> Ints:
+        return out.rows(MAP, len(new), {"solid": _painted(out, block, new)}) + 1
 
     maps = block.boxes(out, boxes, write)
     items = out.rows(MAPPED, len(maps), {**block.columns(out), "box": maps}) + 2
@@ -191,8 +194,8 @@ def _mapped(out: Part21, block: _Block, boxes: dict[int, int]) -> list[Product]:
 def _assembly(out: Part21, block: _Block, boxes: dict[int, int]) -> list[Product]:
     """Each domain as an assembly of boxes: seven statements a channel, for readers that do not know mapped items."""
 
-    def write(out: Part21, new: Sequence[Prism]) -> Ints:
-        names, solids = [box.name for box in new], _painted(out, new)[:, None]
+    def write(out: Part21, new: Sequence[int]) -> Ints:
+        names, solids = [_box_name(step) for step in new], _painted(out, block, new)[:, None]
         made = out.products(names, list(solids), "ADVANCED_BREP_SHAPE_REPRESENTATION")
         return np.array([product.definition for product in made])
 

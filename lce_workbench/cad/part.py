@@ -30,7 +30,7 @@ def solid(prism: Prism) -> Any:
         made = polyhedron([prism])
         faces = [Part.Face([_wire(made.points[loop]) for loop in loops]) for loops in made.faces]
         shape = Part.Solid(Part.Shell(faces))
-    require_volume(prism, shape.Volume)
+    require_volume(prism.name, prism.volume, shape.Volume)
     return shape
 
 

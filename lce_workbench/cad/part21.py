@@ -77,7 +77,9 @@ def rows_text(text: str, first: int, n: int, columns: Mapping[str, Any]) -> byte
             return integers(values)
         if kind == "f":
             return billionths(np.rint(values * 1e9).astype(np.int64))
-        return values.encode() if isinstance(values, str) else np.array([value.encode() for value in values])
+        if isinstance(values, str | np.ndarray):
+            return values.encode() if isinstance(values, str) else values
+        return np.array([value.encode() for value in values])
 
     made = {field: column(*field) for field in {piece for piece in pieces if not isinstance(piece, bytes)}}
     return lines([piece if isinstance(piece, bytes) else made[piece] for piece in pieces])

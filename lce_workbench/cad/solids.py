@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from lce_solver.errors import LceError
 from lce_workbench.core.polyhedron import Polyhedron, polyhedron
-from lce_workbench.core.prism import Prism
+from lce_workbench.core.prism import Prism, together
 
 if TYPE_CHECKING:
     import cadquery as cq
@@ -23,24 +23,15 @@ VOLUME_TOLERANCE = 1e-9
 """Largest accepted relative difference between a kernel's volume and the prism's own."""
 
 
-def solid(prism: Prism) -> cq.Solid:
-    """The prism from its faces; nothing is cut or sewn.
+def solid(stack: Sequence[Prism]) -> cq.Solid:
+    """The body of prisms that stand on each other, see `polyhedron`; nothing is cut, extruded or sewn.
+
+    Edges are shared by the faces that meet there, so the shell is closed as it is made.
 
     Raises
     ------
     LceError
-        The kernel's volume is not the prism's.
-    """
-    shape = shell([prism])
-    require_volume(prism, shape.Volume())
-    return shape
-
-
-def shell(stack: Sequence[Prism]) -> cq.Solid:
-    """The solid inside the surface of prisms that stand on each other, see `polyhedron`.
-
-    Edges are shared by the faces that meet there, so the shell is closed as it is made: some 50 times faster than
-    extrusion or sewing.
+        The kernel's volume is not that of the prisms.
     """
     import cadquery as cq
     from OCP.BRep import BRep_Builder
@@ -68,7 +59,9 @@ def shell(stack: Sequence[Prism]) -> cq.Solid:
         builder.Add(shell, face)
     shell.Closed(True)
     builder.Add(body, shell)
-    return cq.Solid(body)
+    found = cq.Solid(body)
+    require_volume(stack[0].name, together(stack)[0], found.Volume())
+    return found
 
 
 def _edges(made: Polyhedron, points: Sequence[gp_Pnt]) -> dict[tuple[int, int], TopoDS_Edge]:
@@ -81,11 +74,11 @@ def _edges(made: Polyhedron, points: Sequence[gp_Pnt]) -> dict[tuple[int, int], 
     return {(a, b): BRepBuilderAPI_MakeEdge(vertices[a], vertices[b]).Edge() for a, b in pairs}
 
 
-def require_volume(prism: Prism, volume: float) -> None:
-    """Raise `LceError` unless a kernel's ``volume`` is the prism's."""
-    if not isclose(volume, prism.volume, rel_tol=VOLUME_TOLERANCE):
+def require_volume(name: str, want: float, volume: float) -> None:
+    """Raise `LceError` unless a kernel's ``volume`` of a body is what its prisms say."""
+    if not isclose(volume, want, rel_tol=VOLUME_TOLERANCE):
         msg = (
-            f"{prism.name}: the CAD kernel finds {volume:.12g} mm3 instead of {prism.volume:.12g}; "
+            f"{name}: the CAD kernel finds {volume:.12g} mm3 instead of {want:.12g}; "
             "this is a fault of the program, please report it with the job file"
         )
         raise LceError(msg)

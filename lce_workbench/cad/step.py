@@ -18,7 +18,8 @@ from lce_workbench.core.cell import Cell
 from lce_workbench.core.channels import Channels
 from lce_workbench.core.domains import PLATES, Plate
 from lce_workbench.core.job import Job
-from lce_workbench.core.prism import Prism
+from lce_workbench.core.polyhedron import polyhedron
+from lce_workbench.core.prism import Prism, bodies, together
 
 FILES: dict[str, Callable[[Cell], Sequence[Prism]]] = {
     "cell.step": lambda cell: cell.parts,
@@ -72,22 +73,26 @@ def stored_as(name: str, job: Job) -> str:
 
 
 def write_step(prisms: Sequence[Prism], path: Path) -> None:
-    """Write prisms as STEP: a product each; those of a group in an assembly, unless the whole file is that group."""
+    """Write bodies as STEP: a product each; those of a group in an assembly, unless the whole file is that group."""
     with part21(path) as out:
         root = out.product(out.name)
         parents = {"": root, out.name: root}
-        for prism in prisms:
-            if prism.group not in parents:
-                parents[prism.group] = out.product(prism.group)
-                out.place([parents[prism.group]], root)
-            out.place([_product(out, prism)], parents[prism.group])
+        for stack in bodies(prisms).values():
+            group = stack[0].group
+            if group not in parents:
+                parents[group] = out.product(group)
+                out.place([parents[group]], root)
+            out.place([_product(out, stack)], parents[group])
 
 
-def _product(out: Part21, prism: Prism) -> Product:
-    body = write_solids(out, [prism])
-    (product,) = out.products([prism.name], [body], "ADVANCED_BREP_SHAPE_REPRESENTATION")
-    out.paint(body, prism.colour, prism.opacity)
-    out.validate([product], *(np.array([value]) for value in (prism.volume, prism.surface, prism.centroid)))
+def _product(out: Part21, stack: Sequence[Prism]) -> Product:
+    """One body: prisms that stand on each other."""
+    name, outside = stack[0].name, polyhedron(stack)
+    body = write_solids(out, [name], [outside])
+    (product,) = out.products([name], [body], "ADVANCED_BREP_SHAPE_REPRESENTATION")
+    out.paint(body, stack[0].colour, stack[0].opacity)
+    volume, centroid = together(stack)
+    out.validate([product], *(np.array([value]) for value in (volume, outside.surface, centroid)))
     return product
 
 

@@ -15,6 +15,7 @@ Nothing here is mirrored: only the master of the top plate is, when its mask is 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -25,11 +26,13 @@ from lce_solver.topology import boundary_loops
 from lce_solver.types import Floats
 from lce_workbench.core.channels import ChannelField, Channels, corners
 from lce_workbench.core.domains import PLATES, SIDE, Domains, Plate
-from lce_workbench.core.frame import Frame
+from lce_workbench.core.frame import Frame, Rect
 from lce_workbench.core.job import Job
+from lce_workbench.core.marks import fingerprint
 from lce_workbench.core.merge import merged
 from lce_workbench.core.prism import Colour, Prism
 from lce_workbench.core.units import UM
+from lce_workbench.core.workshop import alignment_frame, beads, carrier, engraved, glass_levels, inset
 
 MAX_SOLIDS = 10_000
 """Channel solids of both plates; about 30 domains."""
@@ -49,6 +52,8 @@ LOOKS: dict[str, tuple[Colour, float]] = {
     "land": ((0.87, 0.60, 0.22), 0.40),
     "mylar": ((0.56, 0.61, 0.67), 1.0),
     "film": ((0.80, 0.22, 0.30), 1.0),
+    "glue": ((0.95, 0.95, 0.80), 0.6),
+    "jig": ((0.35, 0.38, 0.42), 1.0),
     "channel": ((0.16, 0.44, 0.72), 1.0),
 }
 """Material -> colour (red, green, blue in [0, 1], sRGB) and opacity."""
@@ -92,19 +97,18 @@ def assemble(
         A chosen domain does not exist or has no channels, or the solids would be too many.
     """
     chosen = choose(domains, channels, job.output.step_domains)
-    gap = job.sheet.thickness
+    gap, code = job.sheet.thickness, fingerprint(domains, job.channels)
     trenches = {plate: {k: corners(channels[plate], _rows(channels[plate], k)) for k in chosen} for plate in PLATES}
     cut = _few_enough(channels, chosen)
     bottom, top = (
-        _plate(frame, job, plate, [*merged(marks[plate]), *(ring for k in cut for ring in trenches[plate][k])])
+        _plate(frame, job, plate, [*merged(marks[plate]), *(ring for k in cut for ring in trenches[plate][k])], code)
         for plate in PLATES
     )
     sheet = domains.vertices[boundary_loops(domains.triangles)[0]]
-    film = _part("sheet", "film", [sheet], (-gap / 2, gap / 2))
-    left, right = (
-        _part(f"spacer_{side}", "mylar", [strip.ring], (-gap / 2, gap / 2), "spacer")
-        for side, strip in zip(("left", "right"), frame.strips, strict=True)
-    )
+    between = (-gap / 2, gap / 2)
+    film = _part("sheet", "film", [sheet], between)
+    spacer = _pair("spacer", "mylar", frame.strips, between)
+    glue = _pair("glue", "glue", beads(frame, job), between)
     solids = [
         _channel_solid(channels[plate], k, ring, gap)
         for plate, rings in trenches.items()
@@ -116,7 +120,7 @@ def assemble(
         for plate, rings in trenches.items()
         for k in chosen
     ]
-    return Cell((*bottom[::-1], left, right, film, *top), tuple(solids), tuple(combs), chosen)
+    return Cell((*bottom[::-1], *spacer, *glue, film, *top, *_jig(frame, job)), tuple(solids), tuple(combs), chosen)
 
 
 def choose(
@@ -167,22 +171,51 @@ def _few_enough(channels: Mapping[Plate, Channels], chosen: Sequence[int]) -> Se
     return chosen[: int(np.searchsorted(np.cumsum(np.max(counts, axis=0)), MAX_CUT, side="right"))]
 
 
-def _plate(frame: Frame, job: Job, plate: Plate, recesses: Sequence[Floats]) -> tuple[Prism, ...]:
-    """Land, epoxy and glass, from the film outwards."""
-    side, group = SIDE[plate], f"{plate}_plate"
-    thickness = (job.channels.depth, job.plates.epoxy_um * UM, job.plates.glass_mm)
-    levels = side * np.cumsum([job.sheet.thickness / 2, *thickness])
-    rings = {"land": [frame.plate.ring, *recesses], "epoxy": [frame.plate.ring], "glass": [frame.plate.ring]}
-    return tuple(
-        _part(f"{plate}_{kind}", kind, rings[kind], (levels[i], levels[i + 1]), group) for i, kind in enumerate(rings)
+def _plate(frame: Frame, job: Job, plate: Plate, recesses: Sequence[Floats], code: str) -> tuple[Prism, ...]:
+    """Land, epoxy and glass, from the film outwards; the layers of the glass bear one name."""
+    group, outline = f"{plate}_plate", carrier(frame, job, plate)
+    faces = np.cumsum([job.sheet.thickness / 2, job.channels.depth, job.plates.epoxy_um * UM, job.plates.glass_mm])
+    narrow = inset(outline, job.plates.epoxy_um * UM * math.tan(math.radians(job.plates.release_deg)))
+    letters, glass_mm = engraved(frame, job, plate, code), job.plates.glass_mm
+
+    def layer(kind: str, near: float, far: float, rings: tuple[Floats, Floats], holes: Sequence[Floats]) -> Prism:
+        """Between two distances from the mid-plane, with an outline at each."""
+        z, ends = (near, far) if plate == "top" else (-far, -near), rings if plate == "top" else rings[::-1]
+        return _part(f"{plate}_{kind}", kind, [ends[0], *holes], z, group, top=ends[1])
+
+    glass = []
+    for low, high, at_low, at_high, deep in glass_levels(job):
+        near, far = (faces[2] + (glass_mm - depth) for depth in (low, high))  # so that both meet exactly
+        rings = inset(outline, at_low), inset(outline, at_high)
+        glass.append(layer("glass", near, far, rings, letters if deep else []))
+    return (
+        layer("land", faces[0], faces[1], (narrow, narrow), recesses),
+        layer("epoxy", faces[1], faces[2], (narrow, outline), []),
+        *glass,
     )
 
 
-def _part(name: str, kind: str, rings: Sequence[Floats], z: tuple[float, float], group: str = "") -> Prism:
+def _pair(name: str, kind: str, places: Sequence[Rect], z: tuple[float, float]) -> tuple[Prism, ...]:
+    """A left and a right part, if there are any, as an assembly."""
+    sides = zip(("left", "right"), places, strict=False)
+    return tuple(_part(f"{name}_{side}", kind, [place.ring], z, name) for side, place in sides)
+
+
+def _jig(frame: Frame, job: Job) -> tuple[Prism, ...]:
+    """The alignment frame, from the bottom plate's outer face to the film's mid-plane and as far above it."""
+    rings = alignment_frame(frame, job)
+    reach = job.sheet.thickness / 2 + job.channels.depth + job.plates.epoxy_um * UM + job.plates.glass_mm
+    return () if rings is None else (_part("alignment_frame", "jig", [*rings], (-reach, reach / 2)),)
+
+
+def _part(
+    name: str, kind: str, rings: Sequence[Floats], z: tuple[float, float], group: str = "", *, top: Floats | None = None
+) -> Prism:
     """A prism of one of the materials of `LOOKS`."""
     colour, opacity = LOOKS[kind]
     low, high = sorted(map(float, z))
-    return Prism(name, rings[0], tuple(rings[1:]), low, high, colour, opacity, group)
+    slanted = top is not None and not np.array_equal(top, rings[0])
+    return Prism(name, rings[0], tuple(rings[1:]), low, high, colour, opacity, group, top if slanted else None)
 
 
 def _heights(job: Job, plate: Plate) -> tuple[float, float]:

@@ -131,12 +131,12 @@ def _glass(needed: Rect, job: Job) -> Rect:
     """The carrier, centred on the origin: the job's own, or the first standard one that holds ``needed``."""
     half_x = max(-needed.x0, needed.x1)
     half_y = max(-needed.y0, needed.y1)
-    own = (job.plates.width_mm, job.plates.height_mm)
+    own = _own(job)
     if own != (None, None):
         width, height = own[0] or 2 * half_x, own[1] or 2 * half_y
         if width < 2 * half_x or height < 2 * half_y:
             msg = (
-                f"plates.width_mm x height_mm = {width:g} x {height:g} is too small: sheet, marks, spacer and glue "
+                f"the plate of {width:g} x {height:g} mm is too small: sheet, marks, spacer and glue "
                 f"edges need {2 * half_x:.1f} x {2 * half_y:.1f} mm; take a larger plate or a smaller sheet.width_mm"
             )
             raise InputError(msg)
@@ -149,3 +149,16 @@ def _glass(needed: Rect, job: Job) -> Rect:
         f"larger than the writer's {GLASS[-1][0]:g} x {GLASS[-1][1]:g} mm; make the sheet smaller"
     )
     raise InputError(msg)
+
+
+def _own(job: Job) -> tuple[float | None, float | None]:
+    """Width and height that the job asks for, by name or by number."""
+    plates = job.plates
+    given = plates.width_mm, plates.height_mm
+    if plates.carrier == "auto":
+        return given
+    if given != (None, None):
+        msg = f"plates.carrier = {plates.carrier} fixes the glass; leave out plates.width_mm and plates.height_mm"
+        raise InputError(msg)
+    width, height = plates.carrier.split("x")
+    return float(width), float(height)

@@ -154,12 +154,37 @@ class ChannelSpec:
 class Plates:
     """The two epoxy plates on their glass carriers."""
 
+    carrier: str = param(
+        "auto",
+        "standard glass, width x height in mm; auto: the smallest that fits, or width_mm and height_mm",
+        choices=("auto", "25x25", "25x75", "75x25", "50x50"),
+    )
     width_mm: float | None = param(
         None, "glass width (x); default: smallest standard glass", unit="mm", above=0.0, high=200.0
     )
     height_mm: float | None = param(None, "glass height (y)", unit="mm", above=0.0, high=200.0)
     glass_mm: float = param(1.0, "glass thickness", unit="mm", above=0.0, high=20.0)
     epoxy_um: float = param(50.0, "epoxy layer under the channels", unit="um", above=0.0, high=5000.0)
+    chamfer_mm: float = param(0.0, "chamfer of the glass's outer edges, at 45 deg", unit="mm", low=0.0, high=5.0)
+    release_deg: float = param(
+        0.0, "release taper of the epoxy's sides, narrower at the film", unit="deg", low=0.0, high=45.0
+    )
+    notch_mm: float = param(
+        0.0,
+        "handling notch: what is cut from a lower corner, the bottom plate's left and the top plate's right one",
+        unit="mm",
+        low=0.0,
+        high=50.0,
+    )
+    engraving_um: float = param(
+        0.0, "depth of BOTTOM or TOP and the design's code in the glass's outer face", unit="um", low=0.0, high=1000.0
+    )
+    frame_mm: float = param(
+        0.0, "wall of an alignment frame around both plates; 0: no frame", unit="mm", low=0.0, high=50.0
+    )
+    frame_clearance_um: float = param(
+        50.0, "between the plates and the alignment frame", unit="um", low=0.0, high=1000.0
+    )
 
 
 @dataclass(frozen=True)
@@ -182,6 +207,9 @@ class Spacer:
     strip_mm: float = param(3.0, "width of a strip", unit="mm", above=0.0, high=50.0)
     clearance_mm: float = param(1.0, "between strips and sheet, and strips and marks", unit="mm", low=0.0, high=50.0)
     glue_mm: float = param(2.0, "free glass outside each strip for the glue", unit="mm", low=0.0, high=50.0)
+    bead_mm: float = param(
+        1.0, "width of the glue beads there, at most glue_mm; 0: none", unit="mm", low=0.0, high=50.0
+    )
 
 
 @dataclass(frozen=True)

@@ -23,16 +23,32 @@ class Polyhedron:
 
     @property
     def normals(self) -> Floats:
-        """(n_f, 3) outward unit normals, by Newell's formula about the first point of each face."""
-        outer = [face[0] for face in self.faces]
-        sizes = np.array([len(loop) for loop in outer])
-        starts = np.cumsum(sizes) - sizes
-        following = np.arange(1, sizes.sum() + 1)
-        following[starts + sizes - 1] = starts
-        points = self.points[np.concatenate(outer)]
-        points = points - np.repeat(points[starts], sizes, axis=0)
-        found = np.add.reduceat(np.cross(points, points[following]), starts)
+        """(n_f, 3) outward unit normals."""
+        found = self._vectors([face[0] for face in self.faces])
         return np.asarray(found / np.linalg.norm(found, axis=1)[:, None])
+
+    @property
+    def surface(self) -> float:
+        """Area of all faces [mm2]."""
+        vectors = self._vectors([loop for face in self.faces for loop in face])
+        starts = np.cumsum([0, *(len(face) for face in self.faces)])[:-1]
+        return float(np.linalg.norm(np.add.reduceat(vectors, starts), axis=1).sum())
+
+    def _vectors(self, loops: Sequence[Ints]) -> Floats:
+        """(n, 3) area times normal of each loop, by Newell's formula about its first point."""
+        sizes = np.array([len(loop) for loop in loops])
+        starts = np.cumsum(sizes) - sizes
+        points = self.points[np.concatenate(loops)]
+        points = points - np.repeat(points[starts], sizes, axis=0)
+        return np.asarray(np.add.reduceat(np.cross(points, points[following(sizes)]), starts) / 2)
+
+
+def following(sizes: Ints) -> Ints:
+    """(n,) index of the corner after each corner of loops of these sizes, laid end to end."""
+    ends = np.cumsum(sizes)
+    found = np.arange(1, ends[-1] + 1)
+    found[ends - 1] = ends - sizes
+    return found
 
 
 def polyhedron(stack: Sequence[Prism]) -> Polyhedron:

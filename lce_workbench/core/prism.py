@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +21,7 @@ class Prism:
     """A polygon with holes between two heights. Rings that run the other way round are turned."""
 
     name: str
-    """ASCII; channels of one domain share a name and become one product."""
+    """ASCII; layers of one body share a name, and so do the channels of one domain, which become one product."""
     outline: Floats
     """(n, 2) counter-clockwise [mm]."""
     holes: tuple[Floats, ...]
@@ -56,18 +57,14 @@ class Prism:
         return self.outline if self.upper is None else self.upper
 
     @property
+    def area(self) -> float:
+        """Area of the lower face [mm2]."""
+        return float(self._sections[0, 0])
+
+    @property
     def volume(self) -> float:
         """[mm3]."""
         return float(SIMPSON @ self._sections[:, 0]) * (self.z1 - self.z0)
-
-    @property
-    def surface(self) -> float:
-        """Area of all faces [mm2]."""
-        walls = (self.z1 - self.z0) * float(sum(_perimeter(hole) for hole in self.holes))
-        slanted = np.insert(self.top - np.roll(self.outline, -1, axis=0), 2, self.z1 - self.z0, axis=1)
-        other = np.insert(np.roll(self.top, -1, axis=0) - self.outline, 2, self.z1 - self.z0, axis=1)
-        walls += float(np.linalg.norm(np.cross(slanted, other), axis=1).sum()) / 2  # diagonals of each wall
-        return float(self._sections[[0, 2], 0].sum()) + walls
 
     @property
     def centroid(self) -> Floats:
@@ -84,8 +81,18 @@ class Prism:
         return np.array([_moments(outline) + inner for outline in outlines])
 
 
-def _perimeter(ring: Floats) -> float:
-    return float(np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1).sum())
+def together(stack: Sequence[Prism]) -> tuple[float, Floats]:
+    """Volume [mm3] and centroid (3,) [mm] of several prisms."""
+    volumes = np.array([prism.volume for prism in stack])
+    return float(volumes.sum()), np.asarray(volumes @ [prism.centroid for prism in stack] / volumes.sum())
+
+
+def bodies(prisms: Sequence[Prism]) -> dict[str, list[Prism]]:
+    """Name -> the prisms that bear it, from below: layers of one body."""
+    found: dict[str, list[Prism]] = {}
+    for prism in sorted(prisms, key=lambda prism: prism.z0):
+        found.setdefault(prism.name, []).append(prism)
+    return {name: found[name] for name in dict.fromkeys(prism.name for prism in prisms)}
 
 
 def _turned(ring: Floats, sign: int) -> Floats:

@@ -64,6 +64,7 @@ def test_the_cell_is_an_assembly_of_plates_spacer_and_sheet(read):
     assert Counter(paths) == {
         ("cell", "bottom_plate"): 3,
         ("cell", "spacer"): 2,
+        ("cell", "glue"): 2,
         ("cell",): 1,
         ("cell", "top_plate"): 3,
     }
