@@ -90,8 +90,14 @@ def _near(polygons: Floats, whole: Ints) -> tuple[Ints, Ints]:
         once = (np.floor(left / TILE) == column[a]) & (np.floor(below / TILE) == row[a])  # not in each tile they share
         pairs.append(np.stack([owner[a], owner[b]])[:, meet & once])
     first, second = np.concatenate(pairs or [np.empty((2, 0), np.int64)], axis=1)
-    others = whole[first] != whole[second]
-    return first[others], second[others]
+    meet = whole[first] != whole[second]
+    for diagonal in (
+        polygons.sum(axis=2),
+        np.subtract(polygons[..., 0], polygons[..., 1]),
+    ):  # boxes turned by 45 degrees
+        begins, ends = diagonal.min(axis=1) - SEEN, diagonal.max(axis=1) + SEEN
+        meet &= np.maximum(begins[first], begins[second]) <= np.minimum(ends[first], ends[second])
+    return first[meet], second[meet]
 
 
 def _tiles(low: Floats, high: Floats) -> tuple[Ints, Ints, Ints]:
