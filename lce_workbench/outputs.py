@@ -10,16 +10,17 @@ import json
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from lce_solver.errors import EnvironmentFault, InputError
 from lce_solver.types import Design, Finding, Flattening, Ints, Material, Prediction, Severity, Start, Status, Surface
+from lce_workbench.core.domains import Domains, partition
 
 if TYPE_CHECKING:  # it imports SciPy, which the Python inside FreeCAD may lack
     from lce_solver.compare import Comparison
@@ -234,8 +235,11 @@ def has_error(findings: Sequence[Mapping[str, Any]]) -> bool:
     return any(record["severity"] == Severity.ERROR.value for record in findings)
 
 
-def write_design(design: Design, path: Path) -> None:
-    """Write `design.npz`; numbers and texts only, it loads without pickle. Same design, same bytes."""
+def write_design(design: Design, path: Path, domains: Domains | None = None) -> None:
+    """Write `design.npz`; numbers and texts only, it loads without pickle. Same design, same bytes.
+
+    ``domains`` are stored too, with ``domain_`` before their names; without them they are the design's triangles.
+    """
     np.savez(
         path,
         vertices=design.surface.vertices,
@@ -255,7 +259,12 @@ def write_design(design: Design, path: Path) -> None:
         flipped=design.flattening.flipped,
         crossings=design.flattening.crossings,
         **{f"start_{field.name}": [_plain(getattr(start, field.name)) for start in design.starts] for field in STARTS},
+        **({} if domains is None else {f"domain_{field.name}": getattr(domains, field.name) for field in DOMAINS}),
     )
+
+
+DOMAINS = fields(Domains)
+"""Columns of domains that are not the design's triangles, in `design.npz` with ``domain_`` before their names."""
 
 
 STARTS = fields(Start)
@@ -288,12 +297,35 @@ def read_design(path: Path) -> Design:
     InputError
         The file is missing, damaged or of another kind.
     """
+    return _read(path, _design)
+
+
+def read_domains(path: Path) -> Domains:
+    """The domains of a `design.npz`: those that it stores, else its triangles.
+
+    Raises
+    ------
+    InputError
+        The file is missing, damaged or of another kind.
+    """
+    return _read(path, _domains)
+
+
+Made = TypeVar("Made")
+
+
+def _read(path: Path, make: Callable[[Mapping[str, Any]], Made]) -> Made:
     try:
         with np.load(path, allow_pickle=False) as data:
-            return _design({name: data[name] for name in data.files})
+            return make({name: data[name] for name in data.files})
     except (OSError, ValueError, KeyError) as fault:
         msg = f"{path} is not a readable design ({fault}); run `./lce design` again"
         raise InputError(msg) from None
+
+
+def _domains(data: Mapping[str, Any]) -> Domains:
+    stored = {field.name: data.get(f"domain_{field.name}") for field in DOMAINS}
+    return partition(_design(data)) if stored["polygons"] is None else Domains(**stored)
 
 
 def _design(data: Mapping[str, Any]) -> Design:

@@ -18,13 +18,13 @@ from lce_solver.compare import REACH, Comparison, Verdict, compare
 from lce_solver.design import design
 from lce_solver.errors import EnvironmentFault, InputError, LceError, SolverError
 from lce_solver.shell import film_of, predict, settle
-from lce_solver.types import Design, Finding, Progress, Severity, Status, silent
+from lce_solver.types import Design, Finding, Progress, Severity, silent
 from lce_workbench import ROOT, __version__
 from lce_workbench.core import align, jobfile, material, target
 from lce_workbench.core.cell import choose, select
 from lce_workbench.core.channels import ChannelField, Channels, empty_domains
 from lce_workbench.core.closed import closed
-from lce_workbench.core.domains import PLATES, Plate, partition
+from lce_workbench.core.domains import PLATES, Plate
 from lce_workbench.core.fields import left_out
 from lce_workbench.core.frame import arrange
 from lce_workbench.core.job import Job
@@ -32,6 +32,8 @@ from lce_workbench.core.job_sheet import job_sheet, totals
 from lce_workbench.core.marks import fingerprint
 from lce_workbench.core.mask import compose
 from lce_workbench.core.mask_checks import check
+from lce_workbench.core.partition import FOLDED, divide
+from lce_workbench.core.sampling import as_made
 from lce_workbench.core.units import UM
 from lce_workbench.export import EXPORTERS
 from lce_workbench.export.pictures import write_pictures
@@ -42,6 +44,7 @@ from lce_workbench.outputs import (
     digest,
     has_error,
     read_design,
+    read_domains,
     read_manifest,
     require_unchanged,
     staged,
@@ -127,12 +130,13 @@ def run_design(run: Run) -> Findings:
     result, said = solved(run) if run.metric is None else retwist(job, inputs(job, run.base), run.metric)
     arrange(result.uv, job)  # a plate that is too small is told before anything is drawn
     (run.folder / "job.toml").write_text(jobfile.dump(rebased(job, run.base, run.folder)), encoding="utf-8")
-    write_design(result, run.folder / "design.npz")
-    domains = partition(result)
+    domains, divided = divide(result, job)
+    plain = job.domains.kind == "triangles" and not job.channels.align_phase
+    write_design(result, run.folder / "design.npz", None if plain else domains)
     fields = {plate: ChannelField(domains, plate, job.channels) for plate in PLATES}
     choose(domains, fields, job.output.step_domains)  # told before anything else is computed
     write_table(domains, [fields[plate].counts for plate in PLATES], run.folder / "domains.csv")
-    return (*said, *target.sized(result, job), *sheet_findings(job))
+    return (*said, *target.sized(result, job), *divided, *sheet_findings(job))
 
 
 def solved(run: Run) -> tuple[Design, Findings]:
@@ -183,7 +187,7 @@ def sheet_findings(job: Job) -> Findings:
 def run_predict(run: Run) -> Findings:
     """Heat the sheet and compare it with the target: `prediction.npz`, `prediction.json`."""
     plan, spec = fabricable(read_design(run.folder / "design.npz")), run.job.prediction
-    film = film_of(plan)
+    film = film_of(as_made(plan, read_domains(run.folder / "design.npz")))
     found = predict(film, seed=spec.seed, imperfection=spec.imperfection, steps=spec.steps, progress=run.progress)
     judged = compare(plan, found, settle(film, plan.surface.vertices, progress=run.progress))
     write_prediction(found, judged, run.folder)
@@ -202,7 +206,7 @@ def predicted(judged: Comparison) -> Finding:
 def run_mask(run: Run) -> Findings:
     """Draw both plates: `mask/bottom.*`, `mask/top.*`."""
     plan = fabricable(read_design(run.folder / "design.npz"))
-    domains, frame = partition(plan), arrange(plan.uv, run.job)
+    domains, frame = read_domains(run.folder / "design.npz"), arrange(plan.uv, run.job)
     folder = run.folder / "mask"
     folder.mkdir()
     code = fingerprint(domains, run.job.channels)
@@ -234,7 +238,7 @@ def fabricable(plan: Design) -> Design:
         The flat sheet is folded or overlaps itself.
     """
     status = plan.flattening.status
-    if status in {Status.FLIPPED, Status.OVERLAP, Status.NOT_FINITE}:
+    if status in FOLDED:
         msg = (
             f"{status.value}, so no mold can be made of it; `./lce design` writes the design to look at, "
             "then try a larger piece of the target's rim, a stronger lambda, or more solver.starts"
@@ -252,8 +256,9 @@ def run_cad(run: Run) -> Findings:
     job, folder = run.job, run.folder / "cad"
     plan = fabricable(read_design(run.folder / "design.npz"))
     folder.mkdir()
-    cell = closed(plan, job)
-    fields = {plate: ChannelField(partition(plan), plate, job.channels) for plate in PLATES}
+    domains = read_domains(run.folder / "design.npz")
+    cell = closed(plan, domains, job)
+    fields = {plate: ChannelField(domains, plate, job.channels) for plate in PLATES}
     solids: dict[Plate, Iterable[Channels]] = dict(fields)
     if job.output.step == "chosen":
         solids = {plate: [select(part, cell.chosen) for part in field] for plate, field in fields.items()}

@@ -10,7 +10,7 @@ from lce_solver.types import Design
 from lce_workbench.core.cell import Cell
 from lce_workbench.core.closed import closed
 from lce_workbench.core.job import Job
-from lce_workbench.outputs import read_design
+from lce_workbench.outputs import read_design, read_domains
 
 
 def stored(path: Path, thickness: float) -> Design:
@@ -34,5 +34,8 @@ def assembled(path: Path, job: Job) -> Cell:
 
 
 @lru_cache(maxsize=4)
-def _assembled(path: Path, changed: int, job: Job) -> Cell:  # noqa: ARG001
-    return closed(stored(path, job.sheet.thickness), job)
+def _assembled(path: Path, changed: int, job: Job) -> Cell:
+    design = stored(path, job.sheet.thickness)
+    domains = read_domains(path)
+    gain = design.thickness / _read(path, changed).thickness
+    return closed(design, replace(domains, dtheta=domains.dtheta * gain), job)

@@ -22,7 +22,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lce_solver.errors import InputError
-from lce_solver.topology import boundary_loops
 from lce_solver.types import Floats
 from lce_workbench.core.channels import ChannelField, Channels, corners
 from lce_workbench.core.domains import PLATES, SIDE, Domains, Plate
@@ -104,9 +103,8 @@ def assemble(
         _plate(frame, job, plate, [*merged(marks[plate]), *(ring for k in cut for ring in trenches[plate][k])], code)
         for plate in PLATES
     )
-    sheet = domains.vertices[boundary_loops(domains.triangles)[0]]
     between = (-gap / 2, gap / 2)
-    film = _part("sheet", "film", [sheet], between)
+    film = _part("sheet", "film", [domains.outline], between)
     spacer = _pair("spacer", "mylar", frame.strips, between)
     glue = _pair("glue", "glue", beads(frame, job), between)
     solids = [
@@ -116,7 +114,7 @@ def assemble(
         for ring in rings[k]
     ]
     combs = [
-        _part(f"comb_{k:04d}_{plate}", "land", [domains.corners[k], *rings[k]], _heights(job, plate), f"combs_{plate}")
+        _part(f"comb_{k:04d}_{plate}", "land", [domains.ring(k), *rings[k]], _heights(job, plate), f"combs_{plate}")
         for plate, rings in trenches.items()
         for k in chosen
     ]

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from lce_solver.errors import InputError
 from lce_solver.types import Finding, Floats, Ints, Severity
-from lce_workbench.core.domains import Domains, Plate, signed_area
+from lce_workbench.core.domains import PLATES, Domains, Plate, signed_area
 from lce_workbench.core.job import ChannelSpec
 
 Bools = NDArray[np.bool_]
@@ -89,9 +89,12 @@ class ChannelField:
     def __iter__(self) -> Iterator[Channels]:
         """Yield the channels of `BLOCK` domains at a time, all of each; domains are numbered through."""
         outlines, angle = self.domains.corners, self.domains.angle(self.plate)
+        phase = self.domains.phase[:, PLATES.index(self.plate)] if self.spec.align_phase else None
         for first in range(0, len(self.domains), BLOCK):
             rows = slice(first, first + BLOCK)
-            centre, length, domain = fill(outlines[rows], angle[rows], self.spec)
+            centre, length, domain = fill(
+                outlines[rows], angle[rows], self.spec, None if phase is None else phase[rows]
+            )
             yield Channels(self.plate, centre, angle, length, domain + first, self.spec.width, self.spec.depth)
 
     @cached_property
@@ -174,14 +177,19 @@ def empty_domains(field: ChannelField) -> tuple[Finding, ...]:
     )
 
 
-def fill(outlines: Floats, angle: Floats, spec: ChannelSpec) -> tuple[Floats, Floats, Ints]:
+def fill(
+    outlines: Floats, angle: Floats, spec: ChannelSpec, phase: Floats | None = None
+) -> tuple[Floats, Floats, Ints]:
     """Centres (n, 2), lengths (n,) and domains (n,) of the channels along ``angle`` (m,) in convex outlines (m, k, 2).
 
-    Every domain gets as many strips as the tallest needs; those outside their domain go.
+    Every domain gets as many strips as the tallest needs; those outside their domain go. They run at the distance
+    ``phase`` (m,) to the left of the origin, modulo the pitch; without it they are centred in their domain.
     """
     origin = outlines.mean(axis=1)  # local coordinates, so that no digits are lost at the sheet's rim
     local = _turn(outlines - origin[:, None], -angle[:, None])
-    y, inside = _strips(local, spec)
+    if phase is not None:
+        phase = phase - _turn(origin, -angle)[:, 1]
+    y, inside = _strips(local, spec, phase)
     left, right = _ends(local, y, spec)
     steps = np.floor((right - left) * STEPS_PER_MM)
     domain, strip = np.nonzero(inside & (steps >= MIN_LENGTH * STEPS_PER_MM))
@@ -197,12 +205,13 @@ def _turn(points: Floats, angle: Floats) -> Floats:
     return np.stack([c * x - s * y, s * x + c * y], axis=-1)
 
 
-def _strips(local: Floats, spec: ChannelSpec) -> tuple[Floats, Bools]:
+def _strips(local: Floats, spec: ChannelSpec, phase: Floats | None) -> tuple[Floats, Bools]:
     """Mid-lines y (m, k) of strips, centred in each inset outline of (m, c, 2), and which of them it holds (m, k)."""
     low, high = _inset_extent(local, spec.guard)
-    count = np.floor((high - low - spec.width) / spec.pitch) + 1
+    spare = 0.0 if phase is None else np.mod(phase - low - spec.width / 2, spec.pitch)
+    count = np.floor((high - low - spec.width - spare) / spec.pitch) + 1
     k = np.arange(max(count.max(), 0))
-    first = (low + high - (count - 1) * spec.pitch) / 2
+    first = (low + high - (count - 1) * spec.pitch) / 2 if phase is None else low + spec.width / 2 + spare
     return first[:, None] + k * spec.pitch, k < count[:, None]
 
 

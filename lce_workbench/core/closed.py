@@ -9,7 +9,7 @@ import numpy as np
 from lce_solver.types import Design, Ints
 from lce_workbench.core.cell import Cell, assemble
 from lce_workbench.core.channels import Channels, hatch
-from lce_workbench.core.domains import PLATES, Domains, Plate, partition
+from lce_workbench.core.domains import PLATES, Domains, Plate
 from lce_workbench.core.frame import arrange
 from lce_workbench.core.job import ChannelSpec, Job
 from lce_workbench.core.marks import marks
@@ -18,7 +18,7 @@ CANDIDATES = 16
 """The most central of so many domains is shown when the job chooses none; only a speck of a domain has no channel."""
 
 
-def closed(design: Design, job: Job) -> Cell:
+def closed(design: Design, domains: Domains, job: Job) -> Cell:
     """The assembled cell. Only domains that can become solids are hatched: a sheet has a million channels.
 
     Raises
@@ -26,7 +26,7 @@ def closed(design: Design, job: Job) -> Cell:
     InputError
         The parameters do not go together; the sentence names the one to change.
     """
-    domains, frame = partition(design), arrange(design.uv, job)
+    frame = arrange(design.uv, job)
     shown = _shown(domains, job)
     channels = {plate: _channels(domains, plate, job.channels, shown) for plate in PLATES}
     drawn = {plate: [r for rings in marks(frame, plate, job.marks).values() for r in rings] for plate in PLATES}
@@ -45,6 +45,5 @@ def _shown(domains: Domains, job: Job) -> Ints:
 
 def _channels(domains: Domains, plate: Plate, spec: ChannelSpec, shown: Ints) -> Channels:
     """The channels of some domains alone, numbered as in the whole sheet."""
-    rows = {name: getattr(domains, name)[shown] for name in ("triangles", "theta", "dtheta", "stretch")}
-    found = hatch(replace(domains, **rows), plate, spec)
+    found = hatch(domains.chosen(shown), plate, spec)
     return replace(found, angle=domains.angle(plate), domain=shown[found.domain])

@@ -101,11 +101,18 @@ class Sheet:
 class DomainSpec:
     """Monolithic domains: one channel direction each."""
 
-    size_um: float = param(350.0, "mean edge of a domain", unit="um", above=0.0, high=10000.0)
+    kind: str = param(
+        "triangles",
+        "shape of the domains: the design's triangles, hexagons, or the cells of a centroidal Voronoi tessellation",
+        choices=("triangles", "hexagons", "voronoi"),
+    )
+    size_um: float = param(
+        350.0, "mean edge of a triangle, or between the centres of neighbours", unit="um", above=0.0, high=10000.0
+    )
 
     @property
     def size(self) -> float:
-        """Mean edge [mm]."""
+        """Mean edge of a triangle, or between centres [mm]."""
         return self.size_um * UM
 
 
@@ -122,6 +129,11 @@ class ChannelSpec:
         unit="um",
         above=0.0,
         high=100.0,
+    )
+
+    align_phase: bool = param(
+        False,
+        "shift each domain's channels so that they meet a neighbour's, where the directions differ by under 5 deg",
     )
 
     @property

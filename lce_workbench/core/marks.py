@@ -176,6 +176,7 @@ The arrow is the axis about which the top plate is turned over."""
 def fingerprint(domains: Domains, spec: ChannelSpec) -> str:
     """Eight hexadecimal digits of the design: the same for the same channels, to 1 nm and 1 urad."""
     parts = [domains.vertices / NM, domains.theta * 1e6, domains.dtheta * 1e6, np.array([spec.width, spec.pitch]) / NM]
+    parts += [domains.phase / NM] if spec.align_phase else []
     found = hashlib.sha256(b"".join(np.rint(part).astype("<i8").tobytes() for part in parts))
     return found.hexdigest()[:8].upper()
 

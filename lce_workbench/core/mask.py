@@ -105,10 +105,10 @@ def compose(frame: Frame, field: ChannelField, job: Job) -> Mask:
         **exposed(frame, plate, job, fingerprint(field.domains, field.spec)),
         "TEST": fields(frame, job),
         "PLATE": frame.plate.ring[None],
-        "DOMAINS": field.domains.corners,
         "SPACER": np.stack([strip.ring for strip in frame.strips]),
     }
     layers: dict[str, Iterable[Nanometres]] = {name: (written(shape, plate),) for name, shape in shapes.items()}
+    layers["DOMAINS"] = tuple(written(rings, plate) for _, rings in field.domains.rings())
     layers["CHANNELS"] = WrittenChannels(field)
     return Mask(plate, {name: layers[name] for name in LAYERS})
 

@@ -55,7 +55,7 @@ class Block:
     domain: Ints
     """(n,) domain of each channel."""
     borders: Points
-    """(k, n_d) corners of all domains, seen from above; those with fewer repeat their last."""
+    """(k, n_d) corners of all domains, seen from above."""
     direction: Floats
     """(n_d,) angle of the channels that all domains should have on the master [rad]."""
     spec: ChannelSpec
@@ -125,9 +125,8 @@ def inset(block: Block) -> Measured:
     borders = block.borders[:, first : int(block.domain[-1]) + 1]
     nearest = np.full(len(local), np.inf)
     for start, end in zip(borders, np.roll(borders, -1, axis=0), strict=True):
-        size = np.abs(end - start)
-        along = (end - start) / np.where(size > 0, size, 1.0)
-        offset, x, y = np.where(size > 0, _cross(along, start), -np.inf)[local], along.real[local], along.imag[local]
+        along = (end - start) / np.abs(end - start)
+        offset, x, y = _cross(along, start)[local], along.real[local], along.imag[local]
         for corner in block.seen:
             np.minimum(nearest, x * corner.imag - y * corner.real - offset, out=nearest)
     return nearest, block.domain
@@ -286,9 +285,10 @@ def _polygon_findings(mask: Mask, surveys: Mapping[str, Survey]) -> Iterator[Fin
 
 def _border(mask: Mask, domains: Domains) -> Finding:
     """Domain borders, mirrored back on the top plate, against the design."""
-    group = np.concatenate([*mask.layers["DOMAINS"]])
-    seen = flipped(group) if mask.plate == "top" else group
-    error = np.abs(seen - domains.corners / NM).max(axis=(1, 2))
+    error = np.zeros(len(domains))
+    for group, (rows, rings) in zip(mask.layers["DOMAINS"], domains.rings(), strict=True):
+        seen = flipped(group) if mask.plate == "top" else group
+        error[rows] = np.abs(seen - rings / NM).max(axis=(1, 2))
     worst = int(error.argmax())
     text = "largest distance of a written domain corner from the design"
     return _judged(mask, "domain_border", text, Measurement(float(error[worst]), 1.0, False, "nm", f"domain {worst}"))

@@ -14,6 +14,7 @@ from processes import display
 
 from lce_workbench.core import jobfile
 from lce_workbench.core.closed import closed
+from lce_workbench.core.domains import partition
 from lce_workbench.core.job import Job
 from lce_workbench.outputs import write_design
 
@@ -103,7 +104,7 @@ def screen():
 
 def prisms(design, job):
     """Name of a body -> its prisms, by the way the pipeline goes."""
-    cell = closed(design, job)
+    cell = closed(design, partition(design), job)
     found = {prism.name: [prism] for prism in cell.parts}
     for prism in cell.channels:
         found.setdefault(prism.group, []).append(prism)

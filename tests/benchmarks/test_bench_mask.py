@@ -16,7 +16,7 @@ from processes import environment, start
 from sheets import b20
 
 from lce_workbench.core.channels import ChannelField, hatch
-from lce_workbench.core.domains import PLATES, Domains
+from lce_workbench.core.domains import PLATES
 from lce_workbench.core.frame import arrange
 from lce_workbench.core.job import Job
 from lce_workbench.core.mask import compose
@@ -123,8 +123,7 @@ def test_against_the_boolean_route(benchmark, sheet, tmp_path, theirs, times):
     """Hatch and GDSII of everything, against the clipping alone of a sample, per channel and in the same run."""
     domains, frame = sheet
     picked = np.random.default_rng(5).choice(len(domains), SAMPLE, replace=False)
-    rows = (domains.triangles, domains.theta, domains.dtheta, domains.stretch)
-    sample = Domains(domains.vertices, *(row[picked] for row in rows))
+    sample = domains.chosen(picked)
     seconds, count = processor_seconds(theirs, sample)
     assert 0.99 < count / len(hatch(sample, "top", JOB.channels)) < 1.03
     ours, channels = min(processor_seconds(drawn, domains, frame, tmp_path / "top.gds") for _ in range(3))

@@ -169,7 +169,7 @@ def test_channels_lie_in_the_land_and_are_not_mirrored():
 
 def test_an_angle_that_rounds_to_180_degrees_is_named_0():
     sheet = domains()
-    flat = type(sheet)(sheet.vertices, sheet.triangles, np.full(50, np.pi - 1e-6), np.zeros(50), np.ones((50, 2)))
+    flat = type(sheet)(sheet.vertices, sheet.polygons, np.full(50, np.pi - 1e-6), np.zeros(50), np.ones((50, 2)))
     channels = hatched(flat, job())
     built = assemble(arrange(flat.vertices, job()), job(), flat, {"bottom": [], "top": []}, channels)
     assert {p.name[-6:] for p in built.channels} == {"000.00"}

@@ -112,7 +112,7 @@ def test_a_turned_and_shifted_sheet_has_turned_and_shifted_channels():
     rotation = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
     other = Domains(
         domains.vertices @ rotation + shift,
-        domains.triangles,
+        domains.polygons,
         np.mod(domains.theta + turn, np.pi),
         domains.dtheta,
         domains.stretch,
@@ -128,7 +128,7 @@ def test_mirrored_domains_have_mirrored_channels():
     domains = many_triangles()
     other = Domains(
         domains.vertices * [-1, 1],
-        domains.triangles[:, ::-1],
+        domains.polygons[:, ::-1],
         np.pi - domains.theta,
         -domains.dtheta,
         domains.stretch,

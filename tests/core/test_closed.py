@@ -21,7 +21,7 @@ def test_it_is_the_cell_of_the_whole_sheet(chosen):
     plan, job = design(), replace(Job(), output=Output(step_domains=chosen))
     domains, frame = partition(plan), arrange(plan.uv, job)
     drawn = {plate: np.concatenate([*marks(frame, plate, job.marks).values()]) for plate in PLATES}
-    want, found = assemble(frame, job, domains, drawn, hatched(domains, job)), closed(plan, job)
+    want, found = assemble(frame, job, domains, drawn, hatched(domains, job)), closed(plan, domains, job)
     assert found.chosen == want.chosen
     for name in ("parts", "channels", "combs"):
         for one, other in zip(getattr(found, name), getattr(want, name), strict=True):
@@ -32,4 +32,4 @@ def test_it_is_the_cell_of_the_whole_sheet(chosen):
 
 def test_a_domain_that_does_not_exist_is_refused():
     with pytest.raises(InputError, match=r"domain 96 does not exist; the sheet has 0 to 95"):
-        closed(design(), replace(Job(), output=Output(step_domains=(3, 96))))
+        closed(design(), partition(design()), replace(Job(), output=Output(step_domains=(3, 96))))
