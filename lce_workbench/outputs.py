@@ -14,13 +14,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, fields
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from lce_solver.errors import EnvironmentFault, InputError
 from lce_solver.types import Design, Finding, Flattening, Ints, Material, Prediction, Severity, Start, Status, Surface
-from lce_workbench.core.domains import Domains, partition
 
 if TYPE_CHECKING:  # it imports SciPy, which the Python inside FreeCAD may lack
     from lce_solver.compare import Comparison
@@ -235,10 +235,13 @@ def has_error(findings: Sequence[Mapping[str, Any]]) -> bool:
     return any(record["severity"] == Severity.ERROR.value for record in findings)
 
 
-def write_design(design: Design, path: Path, domains: Domains | None = None) -> None:
-    """Write `design.npz`; numbers and texts only, it loads without pickle. Same design, same bytes.
+def write_design(design: Design, path: Path, more: Mapping[str, Any] = MappingProxyType({})) -> None:
+    """Write `design.npz`, with ``more`` arrays; numbers and texts only, loads without pickle. Same design, same bytes.
 
-    ``domains`` are stored too, with ``domain_`` before their names; without them they are the design's triangles.
+    Raises
+    ------
+    OSError
+        The file cannot be written.
     """
     np.savez(
         path,
@@ -259,12 +262,8 @@ def write_design(design: Design, path: Path, domains: Domains | None = None) -> 
         flipped=design.flattening.flipped,
         crossings=design.flattening.crossings,
         **{f"start_{field.name}": [_plain(getattr(start, field.name)) for start in design.starts] for field in STARTS},
-        **({} if domains is None else {f"domain_{field.name}": getattr(domains, field.name) for field in DOMAINS}),
+        **more,
     )
-
-
-DOMAINS = fields(Domains)
-"""Columns of domains that are not the design's triangles, in `design.npz` with ``domain_`` before their names."""
 
 
 STARTS = fields(Start)
@@ -297,35 +296,20 @@ def read_design(path: Path) -> Design:
     InputError
         The file is missing, damaged or of another kind.
     """
-    return _read(path, _design)
-
-
-def read_domains(path: Path) -> Domains:
-    """The domains of a `design.npz`: those that it stores, else its triangles.
-
-    Raises
-    ------
-    InputError
-        The file is missing, damaged or of another kind.
-    """
-    return _read(path, _domains)
+    return read_arrays(path, _design)
 
 
 Made = TypeVar("Made")
 
 
-def _read(path: Path, make: Callable[[Mapping[str, Any]], Made]) -> Made:
+def read_arrays(path: Path, make: Callable[[Mapping[str, Any]], Made]) -> Made:
+    """What ``make`` makes of the arrays of a `design.npz`; errors as for `read_design`."""
     try:
         with np.load(path, allow_pickle=False) as data:
             return make({name: data[name] for name in data.files})
     except (OSError, ValueError, KeyError) as fault:
         msg = f"{path} is not a readable design ({fault}); run `./lce design` again"
         raise InputError(msg) from None
-
-
-def _domains(data: Mapping[str, Any]) -> Domains:
-    stored = {field.name: data.get(f"domain_{field.name}") for field in DOMAINS}
-    return partition(_design(data)) if stored["polygons"] is None else Domains(**stored)
 
 
 def _design(data: Mapping[str, Any]) -> Design:

@@ -35,6 +35,7 @@ from lce_workbench.core.mask_checks import check
 from lce_workbench.core.partition import FOLDED, divide
 from lce_workbench.core.sampling import as_made
 from lce_workbench.core.units import UM
+from lce_workbench.divided import arrays, read_domains
 from lce_workbench.export import EXPORTERS
 from lce_workbench.export.pictures import write_pictures
 from lce_workbench.export.table import write_table
@@ -44,7 +45,6 @@ from lce_workbench.outputs import (
     digest,
     has_error,
     read_design,
-    read_domains,
     read_manifest,
     require_unchanged,
     staged,
@@ -132,7 +132,7 @@ def run_design(run: Run) -> Findings:
     (run.folder / "job.toml").write_text(jobfile.dump(rebased(job, run.base, run.folder)), encoding="utf-8")
     domains, divided = divide(result, job)
     plain = job.domains.kind == "triangles" and not job.channels.align_phase
-    write_design(result, run.folder / "design.npz", None if plain else domains)
+    write_design(result, run.folder / "design.npz", {} if plain else arrays(domains))
     fields = {plate: ChannelField(domains, plate, job.channels) for plate in PLATES}
     choose(domains, fields, job.output.step_domains)  # told before anything else is computed
     write_table(domains, [fields[plate].counts for plate in PLATES], run.folder / "domains.csv")

@@ -10,7 +10,8 @@ from lce_solver.types import Design
 from lce_workbench.core.cell import Cell
 from lce_workbench.core.closed import closed
 from lce_workbench.core.job import Job
-from lce_workbench.outputs import read_design, read_domains
+from lce_workbench.divided import read_domains
+from lce_workbench.outputs import read_design
 
 
 def stored(path: Path, thickness: float) -> Design:

@@ -23,7 +23,8 @@ from lce_workbench.core.mask_checks import check
 from lce_workbench.core.partition import covered, divide
 from lce_workbench.core.sampling import as_made, mismatch, sample
 from lce_workbench.core.tessellation import TESSELLATIONS, voronoi
-from lce_workbench.outputs import read_domains, write_design
+from lce_workbench.divided import arrays, read_domains
+from lce_workbench.outputs import write_design
 
 KINDS = ("triangles", "hexagons", "voronoi")
 TURN = 2 * np.pi * np.arange(120) / 120
@@ -205,7 +206,7 @@ def test_a_folded_sheet_keeps_its_triangles():
 
 def test_stored_domains_come_back_bit_for_bit(tmp_path):
     domains, _ = divide(PLAN, job("voronoi", align=True))
-    write_design(PLAN, tmp_path / "design.npz", domains)
+    write_design(PLAN, tmp_path / "design.npz", arrays(domains))
     found = read_domains(tmp_path / "design.npz")
     for name, value in vars(domains).items():
         assert np.array_equal(getattr(found, name), value), name
