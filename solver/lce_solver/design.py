@@ -11,6 +11,7 @@ from lce_solver.assess import assess
 from lce_solver.bounded import FOLLOWED, cost, retwisted
 from lce_solver.contest import compete
 from lce_solver.errors import InputError
+from lce_solver.family import steer
 from lce_solver.feasible import bounded
 from lce_solver.geometry import area_vectors, face_areas
 from lce_solver.metric import Stop
@@ -62,7 +63,9 @@ def design(
         if not (np.isfinite(length) and length > 0):
             msg = f"the sheet's {name} is {length:g} mm; give a positive length"
             raise InputError(msg)
-    flat, competed = compete(surface, material, starts, Stop(tolerance, max_iterations), progress)
+    stop = Stop(tolerance, max_iterations)
+    flat, competed = compete(surface, material, starts, stop, progress)
+    flat = steer(surface, flat, material, stop)
     angle = sheet_angle(flat.uv, surface)
     lying = turn(flat.uv, angle)
     low, high = lying.min(axis=0), lying.max(axis=0)
