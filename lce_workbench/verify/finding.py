@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
+from typing import Any
 
 from lce_solver.errors import LceError
 from lce_solver.types import Finding, Severity
@@ -41,10 +42,10 @@ def error(check: str, where: str, text: str) -> Finding:
     return Finding(check, Severity.ERROR, f"{where}: {text}", where=where)
 
 
-def guarded(check: str, where: str, run: Callable[[], Iterable[Finding]]) -> Findings:
+def guarded(check: str, where: str, run: Callable[..., Iterable[Finding]], *given: Any) -> Findings:
     """What ``run`` finds, or that the file cannot be checked: damage can make any reader raise anything."""
     try:
-        return tuple(run())
+        return tuple(run(*given))
     except Exception as fault:
         said = " ".join(str(fault).split()) or type(fault).__name__
         return (error(check, where, f"cannot be read ({said[:200]}); write it again"),)

@@ -116,9 +116,9 @@ def table(path: Path) -> dict[str, Floats]:
         raise Unreadable(msg) from None
 
 
-def angles(columns: dict[str, Floats], reference: Reference) -> Iterator[Finding]:
+def angles(path: Path, reference: Reference) -> Iterator[Finding]:
     """`domains.csv` against the design: mid-plane, both plates, both masters (the top one mirrored, x -> -x)."""
-    name = "domains.csv"
+    name, columns = path.name, table(path)
     count = len(reference.theta)
     yield same("verify_table", name, "the number of rows", len(columns["domain"]), count)
     if len(columns["domain"]) != count:

@@ -1,0 +1,300 @@
+"""Mask files through readers that are not ours: gdstk for GDSII and OASIS, ezdxf for DXF; CIF needs none."""
+
+from __future__ import annotations
+
+import re
+from array import array
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lce_solver.types import Floats
+from lce_workbench.verify.finding import Unreadable
+
+LAYERS = {1: "CHANNELS", 2: "MARKS", 3: "LABELS", 4: "TEST", 10: "PLATE", 11: "DOMAINS", 12: "SPACER"}
+"""Numbers (GDSII, OASIS) and names (DXF, CIF) of the layers."""
+
+SHORT = {"CHAN": "CHANNELS", "MARK": "MARKS", "LABL": "LABELS", "PLAT": "PLATE", "DOMN": "DOMAINS", "SPCR": "SPACER"}
+"""CIF's names of four letters."""
+
+MICRON = 1000.0
+"""[nm]"""
+
+MAX_CORNERS = 4000
+"""Of a polygon; no reader of GDSII has to take more."""
+
+DXF_UNITS = {"1": 25.4e6, "4": 1e6, "5": 1e7, "6": 1e9, "13": MICRON, "12": 1.0}
+"""$INSUNITS -> nm."""
+
+DAMAGES = (OSError, ValueError, RuntimeError, KeyError, IndexError, OverflowError, MemoryError)
+"""What readers raise at a damaged file."""
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """What a mask file holds."""
+
+    name: str
+    """Of the file."""
+    layers: Mapping[str, Floats]
+    """Layer -> polygons (n, k, 2), those with fewer corners repeat their last one [nm]."""
+    cells: tuple[str, ...] | None
+    """Names of the cells; None where the format has none."""
+    grid: tuple[float, float] | None
+    """Smallest step and user unit as the file states them [m]; None where it states none."""
+    others: tuple[str, ...]
+    """Everything that is not a closed polygon: texts, references, paths, with how many."""
+
+    @property
+    def count(self) -> int:
+        """Number of polygons."""
+        return sum(len(polygons) for polygons in self.layers.values())
+
+
+def read(path: Path) -> Layout:
+    """The polygons of a mask file by layer.
+
+    Raises
+    ------
+    Unreadable
+        The reader of its format cannot read it.
+    """
+    try:
+        return READERS[path.name.partition(".")[2]](path)
+    except DAMAGES as fault:
+        said = " ".join(str(fault).split())[:160]
+        msg = f"cannot be read to its end ({said or type(fault).__name__}); write it again"
+        raise Unreadable(msg) from None
+
+
+def _gdstk(path: Path) -> Layout:
+    """GDSII or OASIS."""
+    import gdstk
+
+    library = (gdstk.read_oas if path.suffix == ".oas" else gdstk.read_gds)(str(path))
+    others: Counter[str] = Counter()
+    for cell in library.cells:
+        for kind in ("labels", "references", "paths"):
+            others[kind] += len(getattr(cell, kind))
+        others["properties"] += sum(1 for _ in cell.properties)
+    polygons = [polygon for cell in library.cells for polygon in cell.polygons]
+    layer = np.array([(polygon.layer, polygon.datatype) for polygon in polygons], dtype=np.int64).reshape(-1, 2)
+    names = {(number, 0): name for number, name in LAYERS.items()}
+    keys = [names.get(tuple(row), "{}/{}".format(*row)) for row in np.unique(layer, axis=0).tolist()]
+    which = np.unique(layer, axis=0, return_inverse=True)[1].ravel()
+    corners = [polygon.points for polygon in polygons]
+    scale = library.unit / 1e-9
+    grouped = {key: _stacked([corners[i] for i in np.flatnonzero(which == k)]) * scale for k, key in enumerate(keys)}
+    # Floats come of integers by a factor: back to the integers, unless they never were.
+    layers = {key: _snapped(points) for key, points in grouped.items()}
+    cells = tuple(cell.name for cell in library.cells)
+    return Layout(path.name, layers, cells, (library.precision, library.unit), _told(others))
+
+
+def _dxf(path: Path) -> Layout:
+    """DXF of any version: closed polylines by layer, and what else there is."""
+    from ezdxf.lldxf.const import DXFError
+    from ezdxf.lldxf.tagger import ascii_tags_loader
+
+    reading = _Polylines()
+    try:
+        with path.open(encoding="ascii") as file:
+            for code, value in ascii_tags_loader(file):
+                if code in reading.wanted:
+                    reading.take(code, value)
+    except DXFError as fault:
+        raise ValueError(str(fault)) from None
+    return reading.layout(path.name)
+
+
+class _Polylines:
+    """Collects the corners of polylines from a stream of tags."""
+
+    wanted = frozenset((0, 2, 8, 9, 10, 20, 70))
+
+    def __init__(self) -> None:
+        self.kind = self.section = self.variable = ""
+        self.unit = MICRON
+        self.ended = False
+        self.layer: list[str] = []
+        self.count: list[int] = []
+        self.closed: list[bool] = []
+        self.x, self.y = array("d"), array("d")
+        self.others: Counter[str] = Counter()
+
+    def take(self, code: int, value: str) -> None:  # noqa: PLR0912 (a branch a code; called seven million times)
+        if code == 10:
+            if self.kind in CORNERED:
+                self.x.append(float(value))
+                self.count[-1] += 1
+        elif code == 20:
+            if self.kind in CORNERED:
+                self.y.append(float(value))
+        elif code == 0:
+            self.kind = value
+            if value in {"LWPOLYLINE", "POLYLINE"}:
+                self.count.append(0)
+                self.layer.append("")
+                self.closed.append(False)
+            elif value == "EOF":
+                self.ended = True
+            elif self.section in {"ENTITIES", "BLOCKS"} and value not in STRUCTURE:
+                self.others[value] += 1
+        elif code == 8:
+            if self.kind in {"LWPOLYLINE", "POLYLINE"}:
+                self.layer[-1] = value
+        elif code == 70:
+            if self.kind in {"LWPOLYLINE", "POLYLINE"}:
+                self.closed[-1] = bool(int(value) & 1)
+            elif self.variable == "$INSUNITS":
+                self.unit, self.variable = DXF_UNITS.get(value.strip(), np.nan), ""
+        elif code == 9:
+            self.variable = value
+        elif self.kind == "SECTION":
+            self.section, self.kind = value, ""
+
+    def layout(self, name: str) -> Layout:
+        if not self.ended or len(self.x) != len(self.y):
+            msg = "it ends before its end"
+            raise ValueError(msg)
+        self.others["open polylines"] += len(self.closed) - sum(self.closed)
+        points = np.stack([np.array(self.x), np.array(self.y)], axis=1)
+        layers = _by_layer(points * self.unit, np.array(self.count), np.array(self.layer))
+        return Layout(name, layers, None, (1e-9, self.unit * 1e-9), _told(self.others))
+
+
+CORNERED = frozenset(("LWPOLYLINE", "VERTEX"))
+
+STRUCTURE = frozenset(("SECTION", "ENDSEC", "VERTEX", "SEQEND", "BLOCK", "ENDBLK"))
+
+
+def _cif(path: Path) -> Layout:
+    """CIF 2.0: polygons in 0.01 um, scaled by the cell's a / b."""
+    text = path.read_text(encoding="ascii")
+    if not text.rstrip().endswith("E"):
+        msg = "it ends before its end"
+        raise ValueError(msg)
+    unit, cells, layer = 10.0, [], ""
+    others: Counter[str] = Counter()
+    rows: dict[str, list[str]] = {}
+    for command in re.sub(r"\([^)]*\)", "", text).split(";"):
+        word = command.strip()
+        if word.startswith("P"):
+            rows.setdefault(layer, []).append(word[1:])
+        elif word.startswith("L"):
+            layer = SHORT.get(word[1:].strip(), word[1:].strip())
+        elif word.startswith("DS"):
+            _, _, a, b = word.split()
+            unit = 10.0 * int(a) / int(b)
+        elif word.startswith("9 "):
+            cells.append(word[1:].strip())
+        elif word[:1] in {"B", "W", "R", "9"}:
+            others[word[:2].strip()] += 1
+    layers = {
+        key: _snapped(_stacked([np.array(row.split(), dtype=np.float64).reshape(-1, 2) for row in given]) * unit)
+        for key, given in rows.items()
+    }
+    return Layout(path.name, layers, tuple(cells), (unit * 1e-9, unit * 1e-9), _told(others))
+
+
+def _by_layer(points: Floats, counts: Any, names: Any) -> dict[str, Floats]:
+    """Polygons laid end to end -> by layer, padded to the same number of corners."""
+    starts = np.cumsum(counts) - counts
+    found = {}
+    for name in np.unique(names).tolist():
+        rows = np.flatnonzero((names == name) & (counts > 0))
+        size = _most(counts[rows])
+        index = starts[rows, None] + np.minimum(np.arange(size), counts[rows, None] - 1)
+        found[name] = _snapped(points[index])
+    return found
+
+
+def _stacked(polygons: list[Any]) -> Floats:
+    """Polygons (k, 2) of any k as one array (n, k, 2)."""
+    counts = np.array([len(polygon) for polygon in polygons], dtype=np.int64)
+    index = np.cumsum(counts) - counts
+    points = np.concatenate(polygons) if polygons else np.empty((0, 2))
+    size = _most(counts)
+    return np.asarray(points[index[:, None] + np.minimum(np.arange(size), counts[:, None] - 1)])
+
+
+def _most(counts: Any) -> int:
+    most = int(counts.max(initial=1))
+    if most > MAX_CORNERS:
+        msg = f"a polygon has {most} corners"
+        raise ValueError(msg)
+    return most
+
+
+def _snapped(points: Floats) -> Floats:
+    """Numbers that are integers but for the last bits of a factor become integers."""
+    whole = np.rint(points)
+    return np.where(np.abs(points - whole) < 1e-3, whole, points)
+
+
+def _told(others: Mapping[str, int]) -> tuple[str, ...]:
+    return tuple(f"{count} {kind}" for kind, count in sorted(others.items()) if count)
+
+
+READERS: dict[str, Callable[[Path], Layout]] = {
+    "gds": _gdstk,
+    "oas": _gdstk,
+    "dxf": _dxf,
+    "r12.dxf": _dxf,
+    "cif": _cif,
+}
+"""Ending -> reader."""
+
+
+def boxes(polygons: Floats) -> Floats:
+    """(n, 4) low x, low y, high x, high y of polygons (n, k, 2)."""
+    return np.concatenate([polygons.min(axis=1), polygons.max(axis=1)], axis=1)
+
+
+def areas(polygons: Floats) -> Floats:
+    """(n,) areas of polygons (n, k, 2), whichever way they run."""
+    p = polygons - polygons[:, :1]
+    q = np.roll(p, -1, axis=1)
+    return np.asarray(np.abs(np.sum(p[..., 0] * q[..., 1] - p[..., 1] * q[..., 0], axis=1)) / 2)
+
+
+def mirrored(polygons: Floats) -> Floats:
+    """Polygons seen from the other side, x -> -x."""
+    return np.asarray(polygons * np.array([-1.0, 1.0]))
+
+
+def canonical(polygons: Floats) -> Floats:
+    """(n, 2 k) rows that do not depend on where a polygon begins, which way it runs, nor on the order of polygons."""
+    n, k, _ = polygons.shape
+    p = polygons - polygons[:, :1]
+    q = np.roll(p, -1, axis=1)
+    clockwise = np.sum(p[..., 0] * q[..., 1] - p[..., 1] * q[..., 0], axis=1) < 0
+    turned = np.where(clockwise[:, None, None], polygons[:, ::-1], polygons)
+    order = np.lexsort((turned[..., 1].ravel(), turned[..., 0].ravel()))  # rank of every corner
+    rank = np.empty(n * k, dtype=np.int64)
+    rank[order] = np.arange(n * k)
+    first = rank.reshape(n, k).argmin(axis=1)
+    rolled = np.take_along_axis(turned, ((first[:, None] + np.arange(k)) % k)[..., None], axis=1).reshape(n, 2 * k)
+    return rolled[np.lexsort(rolled.T[::-1])]
+
+
+def unlike(one: Floats, other: Floats) -> Floats:
+    """Polygons (m, k, 2) of ``one`` that ``other`` lacks."""
+    if one.shape == other.shape and np.array_equal(one, other):
+        return one[:0]
+    if one.shape[1] != other.shape[1]:
+        return one
+    rows, others = canonical(one), canonical(other)
+    kind = np.dtype((np.void, rows.dtype.itemsize * rows.shape[1]))
+    missing = ~np.isin(*(np.ascontiguousarray(r + 0.0).view(kind).ravel() for r in (rows, others)))
+    return np.asarray(rows[missing].reshape(-1, one.shape[1], 2))
+
+
+def extent(groups: Iterable[Floats]) -> Floats:
+    """(4,) low x, low y, high x, high y of everything."""
+    found = np.concatenate([boxes(group) for group in groups if len(group)])
+    return np.concatenate([found[:, :2].min(axis=0), found[:, 2:].max(axis=0)])
