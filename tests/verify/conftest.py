@@ -1,0 +1,61 @@
+"""A small built folder, and copies of it to tamper with."""
+
+from __future__ import annotations
+
+import json
+import shutil
+
+import pytest
+from tampering import refresh
+
+from lce_workbench import pipeline
+from lce_workbench.core import jobfile
+
+JOB = """
+[target]
+surface = "dome"
+[sheet]
+width_mm = 2.0
+[domains]
+size_um = 300.0
+[marks]
+grating = false
+fields = []
+[solver]
+starts = 1
+[prediction]
+steps = 4
+[output]
+masks = ["gds", "oas", "dxf", "r12.dxf", "cif"]
+pictures = false
+freecad = false
+"""
+
+
+@pytest.fixture(scope="session")
+def built(tmp_path_factory):
+    """All stages but the FreeCAD document, all mask formats."""
+    folder = tmp_path_factory.mktemp("verify") / "built"
+    assert pipeline.build(jobfile.parse(JOB), folder.parent, folder, list(pipeline.STAGES)) in {0, 1}
+    return folder
+
+
+@pytest.fixture
+def copy(built, tmp_path):
+    """A copy of everything."""
+    return shutil.copytree(built, tmp_path / "copy")
+
+
+@pytest.fixture
+def masked(built, tmp_path):
+    """A copy without CAD files, with the masks as GDSII alone: quick to verify."""
+    folder = shutil.copytree(
+        built, tmp_path / "masked", ignore=shutil.ignore_patterns("cad", "*.oas", "*.dxf", "*.cif")
+    )
+    job = folder / "job.toml"
+    job.write_text(job.read_text().replace('["gds", "oas", "dxf", "r12.dxf", "cif"]', '["gds"]'))
+    manifest = json.loads((folder / "manifest.json").read_text())
+    manifest["stages"].remove("cad")
+    (folder / "manifest.json").write_text(json.dumps(manifest))
+    refresh(folder)
+    return folder
