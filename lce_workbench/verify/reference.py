@@ -116,6 +116,9 @@ def arrays(path: Path, names: tuple[str, ...]) -> dict[str, Floats]:
     Unreadable
         The file is missing, damaged, or lacks one of them.
     """
+    if not path.is_file():
+        msg = f"{path.name} is missing, or no file; run `./lce design` again"
+        raise Unreadable(msg)
     try:
         with np.load(path, allow_pickle=False) as data:
             return {name: data[name] for name in names}
