@@ -38,7 +38,8 @@ def verify(folder: Path, progress: Progress = silent) -> Findings:
     """
     folder = Path(folder)
     manifest = read_manifest(folder)
-    stages = [str(stage) for stage in manifest.get("stages") or ("design",)]
+    said = manifest.get("stages")
+    stages = [str(stage) for stage in said] if isinstance(said, list) else ["design"]
     _require_readers(stages)
     progress("verify: papers", 0.0)
     found = guarded("verify_digest", "manifest.json", papers.digests, folder, manifest)
