@@ -33,6 +33,7 @@ from lce_workbench.core.marks import fingerprint
 from lce_workbench.core.mask import compose
 from lce_workbench.core.mask_checks import check
 from lce_workbench.core.partition import FOLDED, divide
+from lce_workbench.core.replication import replicated
 from lce_workbench.core.sampling import as_made
 from lce_workbench.core.units import UM
 from lce_workbench.divided import arrays, read_domains
@@ -211,7 +212,7 @@ def run_mask(run: Run) -> Findings:
     folder.mkdir()
     code = fingerprint(domains, run.job.channels)
     (folder / "readings.csv").write_text(align.form(frame, run.job, code), encoding="ascii")
-    found: list[Finding] = [*left_out(frame, run.job)]
+    found: list[Finding] = [*left_out(frame, run.job), *replicated(run.job.plates.replications)]
     masks, counted = {}, {}
     for k, plate in enumerate(PLATES):
         field = ChannelField(domains, plate, run.job.channels)

@@ -176,6 +176,12 @@ class Plates:
     )
     height_mm: float | None = param(None, "glass height (y)", unit="mm", above=0.0, high=200.0)
     glass_mm: float = param(1.0, "glass thickness", unit="mm", above=0.0, high=20.0)
+    replications: int = param(
+        2,
+        "casts from master to plate: PDMS, epoxy; an odd number turns handedness and relief",
+        low=0,
+        high=9,
+    )
     epoxy_um: float = param(50.0, "epoxy layer under the channels", unit="um", above=0.0, high=5000.0)
     chamfer_mm: float = param(0.0, "chamfer of the glass's outer edges, at 45 deg", unit="mm", low=0.0, high=5.0)
     release_deg: float = param(
