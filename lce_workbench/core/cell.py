@@ -104,7 +104,7 @@ def assemble(
         for plate in PLATES
     )
     between = (-gap / 2, gap / 2)
-    film = _part("sheet", "film", [domains.outline], between)
+    film = _part("sheet", "film", [domains.outline, *domains.holes], between)
     spacer = _pair("spacer", "mylar", frame.strips, between)
     glue = _pair("glue", "glue", beads(frame, job), between)
     solids = [

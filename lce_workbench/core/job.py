@@ -50,6 +50,9 @@ class Target:
     remesh: bool = param(
         True, "mesh the target anew, with even triangles of the domains' size; false keeps the triangles of the input"
     )
+    cuts: bool = param(
+        False, "cut the target open where it is closed, has handles or is too curved; the sheet then has seams"
+    )
     flip: bool = param(False, "turn the surface over, so that its other side becomes the top of the sheet")
 
 

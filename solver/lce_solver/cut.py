@@ -6,6 +6,8 @@ a fine one.
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import igl
 import numpy as np
 from numpy.typing import NDArray
@@ -35,44 +37,34 @@ SNAP = 1.5
 
 
 def opened(surface: Surface, cuts: tuple[Floats, ...]) -> Surface:
-    """The surface cut along the edges closest to ``cuts``, one after the other; both sides get vertices of their own."""
-    for cut in cuts:
-        surface = _split(surface, _along(surface, cut))
-    return surface
-
-
-def _split(surface: Surface, cut: NDArray[np.bool_]) -> Surface:
-    """The surface opened along its edges ``cut`` (n_e,), as `edges` numbers them."""
-    fan = fans(surface.faces, cut)
+    """The surface cut along the edges closest to ``cuts``; both sides of a cut get vertices of their own."""
+    if not cuts:
+        return surface
+    chosen = np.any([_along(surface, cut) for cut in cuts], axis=0)
+    fan = fans(surface.faces, chosen)
     _, corner = np.unique(fan, return_index=True)
     return Surface(surface.vertices[half_edges(surface.faces)[corner, 0]], fan.reshape(3, -1).T)
 
 
 def _along(surface: Surface, cut: Floats) -> NDArray[np.bool_]:
-    """(n_e,) inner edges on the shortest way through the vertices closest to a polyline."""
+    """(n_e,) inner edges on the shortest way through the vertices closest to a polyline; ends near the rim on it."""
     edge, _, count = edge_table(surface.faces)
-    graph = _graph(surface)
+    graph, rim = _graph(surface), _rim(surface)
     chosen = np.zeros(len(edge), dtype=bool)
-    at = int(np.argmin(np.linalg.norm(surface.vertices - cut[0], axis=1)))
-    for k, point in enumerate(cut[1:], 1):
-        distance, before = dijkstra(graph, directed=False, indices=at, return_predecessors=True)
-        end = at = _stop(surface, point, distance, last=k == len(cut) - 1)
-        while before[end] >= 0:
-            pair = sorted((int(before[end]), end))
-            chosen |= (edge == pair).all(axis=1)
-            end = int(before[end])
+    stops = [int(np.argmin(np.linalg.norm(surface.vertices - point, axis=1))) for point in cut]
+    for k in (0, -1) if len(rim) else ():
+        away = np.linalg.norm(surface.vertices[rim] - cut[k], axis=1)
+        if away.min() < SNAP * mean_edge(surface):
+            stops[k] = int(rim[np.argmin(away)])
+    for start, end in pairwise(stops):
+        before = dijkstra(graph, directed=False, indices=start, return_predecessors=True)[1]
+        at = end
+        while at != start:
+            last = int(before[at])
+            chosen |= (edge == sorted((last, at))).all(axis=1)
+            at = last
     chosen &= count == 2
     return chosen
-
-
-def _stop(surface: Surface, point: Floats, distance: Floats, *, last: bool) -> int:
-    """The vertex closest to ``point``; of a cut's last, one on the rim if that is near, on its nearer side."""
-    away = np.linalg.norm(surface.vertices - point, axis=1)
-    rim = _rim(surface)
-    if last and len(rim) and away[rim].min() < SNAP * mean_edge(surface):
-        same = rim[away[rim] <= away[rim].min() * (1 + 1e-9) + 1e-12]
-        return int(same[np.argmin(distance[same])])
-    return int(np.argmin(away))
 
 
 def _rim(surface: Surface) -> Ints:
@@ -83,6 +75,18 @@ def _rim(surface: Surface) -> Ints:
 def _graph(surface: Surface) -> sparse.csr_array:
     n = len(surface.vertices)
     return sparse.csr_array((edge_lengths(surface), tuple(edges(surface.faces).T)), shape=(n, n))
+
+
+def seams(surface: Surface) -> Ints:
+    """(k, 2, 2) pairs of rim edges that lie on each other, the two sides of a cut; each from and to a vertex."""
+    loops = boundary_loops(surface.faces)
+    rim = np.concatenate([np.stack([loop, np.roll(loop, -1)], axis=1) for loop in loops])
+    _, place = np.unique(surface.vertices, axis=0, return_inverse=True)
+    sides = np.sort(place.reshape(-1)[rim], axis=1)
+    _, which, count = np.unique(sides, axis=0, return_inverse=True, return_counts=True)
+    order = np.argsort(which.reshape(-1), kind="stable")
+    pairs: Ints = rim[order[(count == 2)[which.reshape(-1)[order]]]].reshape(-1, 2, 2)
+    return pairs
 
 
 def handles(surface: Surface) -> int:
@@ -103,7 +107,7 @@ def proposed(surface: Surface, material: Material, most: int = MOST) -> tuple[Fl
     flat, error = _judged(trial, material)
     while len(cuts) < most and error > GOOD:
         further = _next(trial, flat, material)
-        longer = opened(trial, (further,))
+        longer = opened(surface, (*cuts, further))
         again, less = _judged(longer, material)
         if less > WORTH * error:
             break
@@ -134,9 +138,9 @@ def _next(surface: Surface, flat: Flattening, material: Material) -> Floats:
         start, end = np.unravel_index(np.argmin(reach[:, others]), (len(loops[0]), len(others)))
         return surface.vertices[[loops[0][start], others[end]]]
     reach = dijkstra(graph, directed=False, indices=_rim(surface), min_only=True)
-    start = int(np.argmax(_error(surface, flat, material) * reach))
-    end = _rim(surface)[np.argmin(dijkstra(graph, directed=False, indices=start)[_rim(surface)])]
-    return surface.vertices[[start, end]]
+    worst = int(np.argmax(_error(surface, flat, material) * reach))
+    nearest = _rim(surface)[np.argmin(dijkstra(graph, directed=False, indices=worst)[_rim(surface)])]
+    return surface.vertices[[worst, nearest]]
 
 
 def _error(surface: Surface, flat: Flattening, material: Material) -> Floats:
