@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from lce_solver.compare import REACH, Comparison, Verdict, compare
+from lce_solver.cut import seams
 from lce_solver.design import design
 from lce_solver.errors import EnvironmentFault, InputError, LceError, SolverError
 from lce_solver.shell import film_of, predict, settle
@@ -216,7 +217,7 @@ def run_mask(run: Run) -> Findings:
     masks, counted = {}, {}
     for k, plate in enumerate(PLATES):
         field = ChannelField(domains, plate, run.job.channels)
-        masks[plate] = mask = compose(frame, field, run.job)
+        masks[plate] = mask = compose(frame, field, run.job, plan.uv[seams(plan.surface).reshape(-1, 2)])
         found += (*empty_domains(field), *check(mask, field, frame, run.job))
         counted[plate] = totals(mask)
         for j, name in enumerate(run.job.output.masks):

@@ -78,7 +78,7 @@ def job_sheet(frame: Frame, job: Job, found: Mapping[Plate, Mapping[str, Total]]
         "",
         f"{'expect':10}{'layer':>7}{'bottom: polygons':>18}{'area mm2':>14}{'top: polygons':>18}{'area mm2':>14}",
     ]
-    for name, number in LAYERS.items():
+    for name, number in ((name, LAYERS[name]) for name in found["bottom"]):
         row = "".join(f"{found[p][name].count:18d}{found[p][name].area:14.6f}" for p in ("bottom", "top"))
         lines.append(f"{name:10}{f'{number}/0':>7}{row}")
     return "\n".join(lines) + "\n"

@@ -40,16 +40,18 @@ def opened(surface: Surface, cuts: tuple[Floats, ...]) -> Surface:
     """The surface cut along the edges closest to ``cuts``; both sides of a cut get vertices of their own."""
     if not cuts:
         return surface
-    chosen = np.any([_along(surface, cut) for cut in cuts], axis=0)
+    edge, _, count = edge_table(surface.faces)
+    chosen = count == 1
+    for cut in cuts:
+        chosen |= _along(surface, cut, edge, np.unique(edge[chosen]))
     fan = fans(surface.faces, chosen)
     _, corner = np.unique(fan, return_index=True)
     return Surface(surface.vertices[half_edges(surface.faces)[corner, 0]], fan.reshape(3, -1).T)
 
 
-def _along(surface: Surface, cut: Floats) -> NDArray[np.bool_]:
-    """(n_e,) inner edges on the shortest way through the vertices closest to a polyline; ends near the rim on it."""
-    edge, _, count = edge_table(surface.faces)
-    graph, rim = _graph(surface), _rim(surface)
+def _along(surface: Surface, cut: Floats, edge: Ints, rim: Ints) -> NDArray[np.bool_]:
+    """(n_e,) the edges on the shortest way through the vertices closest to a polyline; ends near the rim are on it."""
+    graph = _graph(surface)
     chosen = np.zeros(len(edge), dtype=bool)
     stops = [int(np.argmin(np.linalg.norm(surface.vertices - point, axis=1))) for point in cut]
     for k in (0, -1) if len(rim) else ():
@@ -63,7 +65,6 @@ def _along(surface: Surface, cut: Floats) -> NDArray[np.bool_]:
             last = int(before[at])
             chosen |= (edge == sorted((last, at))).all(axis=1)
             at = last
-    chosen &= count == 2
     return chosen
 
 
