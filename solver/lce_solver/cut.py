@@ -32,6 +32,8 @@ QUICK = Stop(1e-4, 400)
 """How far they are solved."""
 EVEN = 4
 """Rounds of averaging of the error whose peak is cut to."""
+STRIDE = 4
+"""Edges between the points of a planned cut."""
 SNAP = 1.5
 """An end of a cut this close to the rim, in mean edges, is on the rim."""
 
@@ -59,13 +61,23 @@ def _along(surface: Surface, cut: Floats, edge: Ints, rim: Ints) -> NDArray[np.b
         if away.min() < SNAP * mean_edge(surface):
             stops[k] = int(rim[np.argmin(away)])
     for start, end in pairwise(stops):
-        before = dijkstra(graph, directed=False, indices=start, return_predecessors=True)[1]
-        at = end
-        while at != start:
-            last = int(before[at])
-            chosen |= (edge == sorted((last, at))).all(axis=1)
-            at = last
+        for pair in pairwise(_way(graph, start, end)):
+            chosen |= (edge == sorted(pair)).all(axis=1)
     return chosen
+
+
+def _way(graph: sparse.csr_array, start: int, end: int) -> list[int]:
+    """The vertices of the shortest way."""
+    before = dijkstra(graph, directed=False, indices=start, return_predecessors=True)[1]
+    way = [end]
+    while way[-1] != start:
+        way.append(int(before[way[-1]]))
+    return way[::-1]
+
+
+def _thinned(surface: Surface, way: list[int]) -> Floats:
+    """(k, 3) every `STRIDE`-th point of a way and its end: a finer mesh finds the same way between them."""
+    return surface.vertices[[*way[:-1:STRIDE], way[-1]]]
 
 
 def _rim(surface: Surface) -> Ints:
@@ -126,22 +138,22 @@ def _opening(surface: Surface) -> tuple[Floats, ...]:
     graph = _graph(surface)
     start = int(np.argmax(dijkstra(graph, directed=False, indices=0)))
     end = int(np.argmax(dijkstra(graph, directed=False, indices=start)))
-    return (surface.vertices[[start, end]],)
+    return (_thinned(surface, _way(graph, start, end)),)
 
 
 def _next(surface: Surface, flat: Flattening, material: Material) -> Floats:
-    """(2, 3) the ends of the next cut, the first inside or on an inner rim, the second on a rim."""
+    """The next cut: between two rims, or from where the error is largest to the rim."""
     loops = sorted(boundary_loops(surface.faces), key=len)
     graph = _graph(surface)
     if len(loops) > 1:
         reach = dijkstra(graph, directed=False, indices=loops[0])
         others = np.concatenate(loops[1:])
         start, end = np.unravel_index(np.argmin(reach[:, others]), (len(loops[0]), len(others)))
-        return surface.vertices[[loops[0][start], others[end]]]
+        return _thinned(surface, _way(graph, int(loops[0][start]), int(others[end])))
     reach = dijkstra(graph, directed=False, indices=_rim(surface), min_only=True)
     worst = int(np.argmax(_error(surface, flat, material) * reach))
-    nearest = _rim(surface)[np.argmin(dijkstra(graph, directed=False, indices=worst)[_rim(surface)])]
-    return surface.vertices[[worst, nearest]]
+    nearest = int(_rim(surface)[np.argmin(dijkstra(graph, directed=False, indices=worst)[_rim(surface)])])
+    return _thinned(surface, _way(graph, worst, nearest))
 
 
 def _error(surface: Surface, flat: Flattening, material: Material) -> Floats:
