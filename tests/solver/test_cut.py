@@ -3,7 +3,7 @@
 import meshes
 import numpy as np
 import pytest
-from test_feasible import cap
+from targets import cap
 
 from lce_solver import judge
 from lce_solver.cut import _judged, handles, opened, proposed, seams
