@@ -1,8 +1,8 @@
 """From the master to the plate: what each cast does to handedness and relief, and what the operator has to set for it.
 
 Looking at its patterned face, a cast is the mirror image of what it was taken from, trenches become ridges. A master
-shows its file unmirrored, exposed positive resist is a trench. The bottom plate is laid face up; the top plate is turned
-over about the y axis, which mirrors it once more.
+shows its file unmirrored, exposed positive resist is a trench. The bottom plate is laid face up; the top plate is
+turned over about the y axis, which mirrors it once more.
 """
 
 from __future__ import annotations
