@@ -263,11 +263,20 @@ class Output:
     overlay_y_um: float = param(-3.0, "the same along y", unit="um")
     writer_um: float = param(0.8, "smallest line and land of the laser writer's mode", unit="um", above=0.0, high=100.0)
     freecad: bool = param(True, "write the FreeCAD document cad/cell.FCStd (needs freecadcmd)")
+    cad: tuple[str, ...] = param(
+        ("domains", "sheet", "stl", "3mf", "svg", "dxf"),
+        "further CAD files: domains (outlines named with their angles), sheet (flat, and as predicted when heated), "
+        "stl, 3mf (plates, patterned face up, for a microprinter), svg, dxf (outlines of all parts, true mm)",
+    )
     step_domains: tuple[int, ...] = param((), "domains whose channels become solids; default: the most central")
+    step_window_um: tuple[int, ...] = param(
+        (), "x0, y0, x1, y1 [um] of a window: the domains that it touches become solids too"
+    )
     step: str = param(
         "chosen",
-        "channel solids in cad/channels_*.step: those of step_domains, or all (some 200 MB a plate of 20 mm)",
-        choices=("chosen", "all"),
+        "channel solids in cad/channels_*.step: of the chosen domains; all (some 250 MB a plate of 20 mm); or exact, "
+        "each a solid of its own with its ends along the domain's border (some 6 GB, in files of 64 domains)",
+        choices=("chosen", "all", "exact"),
     )
     step_instances: str = param(
         "mapped",
