@@ -29,7 +29,7 @@ def write_domains(domains: Domains, path: Path) -> None:
     """
     n = len(domains)
     surface = Polyhedron(
-        np.insert(domains.vertices, 2, 0.0, axis=1), tuple((corners,) for corners in domains.triangles)
+        np.insert(domains.vertices, 2, 0.0, axis=1), tuple((ring[ring >= 0],) for ring in domains.polygons)
     )
     names = domain_names(domains)
     with part21(path) as out:
