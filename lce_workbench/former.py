@@ -15,8 +15,8 @@ from lce_workbench.core import jobfile
 from lce_workbench.core.job import Job
 from lce_workbench.outputs import as_finding, read_design, read_manifest, require_unchanged
 
-OF_THE_JOB = {"domain_edge", "gap", "domain_size"}
-"""Findings that the design stage makes anew from the job itself."""
+ANEW = ("domain", "gap", "partition", "channel_phase")
+"""How the checks begin whose findings the design stage makes anew from the job and the domains."""
 
 
 def retwist(job: Job, inputs: Sequence[Mapping[str, Any]], former: Path) -> tuple[Design, tuple[Finding, ...]]:
@@ -43,7 +43,7 @@ def retwist(job: Job, inputs: Sequence[Mapping[str, Any]], former: Path) -> tupl
     fresh = {finding.check: finding for finding in measured(plan, form, job.sheet.twist_limit)}
     del fresh["solver"]  # it tells of all starts, and only the winner was kept
     kept = [as_finding(record) for record in manifest["findings"] if record["stage"] == "design"]
-    return plan, tuple(fresh.get(finding.check, finding) for finding in kept if finding.check not in OF_THE_JOB)
+    return plan, tuple(fresh.get(finding.check, finding) for finding in kept if not finding.check.startswith(ANEW))
 
 
 def _require_same_metric(former: Job, job: Job, folder: Path) -> None:

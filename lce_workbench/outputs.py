@@ -332,7 +332,7 @@ def _design(data: Mapping[str, Any]) -> Design:
         thickness=float(data["thickness"]),
         flattening=flat,
         bending_left=float(data["bending_left"]),
-        starts=tuple(_start(row) for row in zip(*(data[f"start_{field.name}"] for field in STARTS), strict=True)),
+        starts=tuple(_start(row) for row in zip(*(data.get(f"start_{f.name}", ()) for f in STARTS), strict=True)),
     )
 
 

@@ -127,6 +127,7 @@ def attempt(path, cases):
         doc.recompute()
         said[case] = {
             "invalid": invalid(doc),
+            "design": [doc.Design.Label, doc.Design.Status],
             "moved": [name for name, shape in before.items() if not doc.getObject(name).Shape.isSame(shape)],
         }
         change(doc, former)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -12,10 +11,11 @@ from typing import Any
 import FreeCAD
 
 from lce_solver.errors import InputError
+from lce_workbench.app import cells
 from lce_workbench.app.fcstd import Look, finish, isometric
-from lce_workbench.app.geometry import assembled
-from lce_workbench.app.objects import CELL_SECTIONS, DESIGN_SECTIONS, Body, DesignData, Parameters, is_fine, made_for
+from lce_workbench.app.objects import CELL_SECTIONS, FILES, SHAPED_BY, Body, Parameters, is_fine, prisms_around
 from lce_workbench.app.properties import write
+from lce_workbench.app.results import RESULTS, DesignData
 from lce_workbench.core import jobfile
 from lce_workbench.core.job import Job
 from lce_workbench.outputs import told
@@ -48,7 +48,7 @@ def write_document(design_npz: Path, job: Job, fcstd: Path) -> None:
     """
     doc = FreeCAD.newDocument(fcstd.stem)
     try:
-        build(doc, design_npz, job)
+        build(doc, design_npz, job, design_npz.parent)
         doc.recompute()
         _refuse_invalid(doc)
         _save(doc, fcstd)
@@ -56,58 +56,106 @@ def write_document(design_npz: Path, job: Job, fcstd: Path) -> None:
         FreeCAD.closeDocument(doc.Name)
 
 
-def build(doc: Any, design_npz: Path, job: Job) -> Any:
-    """Add the cell to a document: parameters, design, bodies; nothing is computed yet. Returns the `App::Part`."""
-    cell = doc.addObject("App::Part", "Cell")
-    sections = _parameters(doc, cell, job)
-    design = doc.addObject("App::FeaturePython", "Design")
-    DesignData(design)
-    design.File = str(design_npz)
-    design.Parameters = [sections[name] for name in DESIGN_SECTIONS]
-    design.MadeFor = made_for(job)
-    cell.addObject(design)
-    shaping = [sections[name] for name in CELL_SECTIONS]
-    plan = assembled(design_npz, job)
-    for prism in plan.parts:
-        body = _body(doc, prism.name, design, shaping)
-        _assembly(doc, cell, prism.group).addObject(body)
-    for group in dict.fromkeys(prism.group for prism in plan.channels):
-        cell.addObject(_body(doc, group, design, shaping))
+def build(doc: Any, design_npz: Path, job: Job, base: Path | None = None) -> Any:
+    """Add the whole cell of a solved design to a document; nothing is computed yet. Returns the `App::Part`.
+
+    ``base`` is the folder that the job's file names are relative to; without it the files are not kept in the document.
+    """
+    cell = new_cell(doc, job, base)
+    take_design(cell, design_npz, job)
+    add_bodies(cell)
+    add_window(cell)
     return cell
 
 
-def _parameters(doc: Any, cell: Any, job: Job) -> dict[str, Any]:
-    """An object for each section of the job, in a folder of the cell."""
-    folder = doc.addObject("App::DocumentObjectGroup", "Parameters")
-    cell.addObject(folder)
+def new_cell(doc: Any, job: Job, base: Path | None = None) -> Any:
+    """Add a cell that holds the parameters of a job, and results that are not computed yet."""
+    cell = doc.addObject("App::Part", "Cell")
     found = {}
     for section in fields(Job):
         name = section.name
-        found[name] = doc.addObject("App::FeaturePython", f"{name.capitalize()}Parameters")
-        found[name].Label = f"{name.capitalize()} parameters"
-        Parameters(found[name], name)
-        write(found[name], getattr(job, name))
-        folder.addObject(found[name])
-    return found
+        found[name] = obj = doc.addObject("App::FeaturePython", f"{name.capitalize()}Parameters")
+        Parameters(obj, name)
+        write(obj, getattr(job, name))
+        cell.addObject(obj)
+        if base and name in FILES and (kept := getattr(getattr(job, name), FILES[name])) and (base / kept).is_file():
+            obj.File = str(base / kept)
+    for name in RESULTS:
+        add_result(cell, name)
+    return cell
 
 
-def _body(doc: Any, prisms: str, design: Any, parameters: Sequence[Any]) -> Any:
+def add_result(cell: Any, name: str) -> Any:
+    """The cell's result of this name; it is made when the document has none, being older."""
+    proxy, label = RESULTS[name]
+    obj = cells.result(cell, proxy.__name__)
+    if obj is None:
+        obj = cell.Document.addObject("App::FeaturePython", name)
+        proxy(obj)
+        obj.Label = label
+        sections = cells.sections(cell)
+        obj.Parameters = [sections[section] for section in proxy.SECTIONS]
+        cell.addObject(obj)
+        if proxy is not DesignData:
+            obj.Design = cells.design_of(cell)
+    return obj
+
+
+def take_design(cell: Any, design_npz: Path, job: Job, manifest: str = "") -> None:
+    """Put the design that was solved for ``job`` into the cell."""
+    design = cells.design_of(cell)
+    design.File, design.Job, design.Manifest = str(design_npz), jobfile.dump(job), manifest
+    design.Proxy.remember(design)
+
+
+def add_bodies(cell: Any) -> None:
+    """Add plates, spacer and film that the cell does not have yet."""
+    for prism in prisms_around(cell).parts:
+        if _body_of(cell, prism.name) is None:
+            _assembly(cell, prism.group).addObject(_body(cell, prism.name))
+
+
+def add_window(cell: Any) -> None:
+    """Add the channels of the chosen domains as solids, one body a plate."""
+    for group in dict.fromkeys(prism.group for prism in prisms_around(cell).channels):
+        if _body_of(cell, group) is None:
+            cell.addObject(_body(cell, group))
+
+
+def _body_of(cell: Any, prisms: str) -> Any:
+    bodies = (obj for obj in cell.OutListRecursive if cells.kind_of(obj) == "Body")
+    return next((obj for obj in bodies if obj.Prisms == prisms), None)
+
+
+def _body(cell: Any, prisms: str) -> Any:
     """One body, named after its prisms: ``bottom_land`` becomes BottomLand, "Bottom land"."""
-    body = doc.addObject("Part::FeaturePython", _camel(prisms))
-    body.Label = prisms.replace("_", " ").capitalize()
+    body = cell.Document.addObject("Part::FeaturePython", _camel(prisms))
+    body.Label = BODY_LABELS.get(prisms, prisms.replace("_", " ").capitalize())
     Body(body, prisms)
-    body.Design, body.Parameters = design, list(parameters)
+    sections = cells.sections(cell)
+    body.Design = cells.design_of(cell)
+    body.Parameters = [sections[name] for name in SHAPED_BY.get(prisms, CELL_SECTIONS)]
     return body
 
 
-def _assembly(doc: Any, cell: Any, group: str) -> Any:
+BODY_LABELS = {
+    "sheet": "Film",
+    "channels_bottom": "Channel window, bottom",
+    "channels_top": "Channel window, top",
+}
+"""Prisms -> label, where the name of the prisms says too little."""
+
+
+def _assembly(cell: Any, group: str) -> Any:
     """The `App::Part` of a group inside the cell, or the cell itself."""
     if not group:
         return cell
-    part = doc.getObject(_camel(group))
+    label = group.replace("_", " ").capitalize()
+    inside = [obj for obj in cell.Group if obj.isDerivedFrom("App::Part")]
+    part = next((obj for obj in inside if obj.Label == label or obj.Name == _camel(group)), None)
     if part is None:
-        part = doc.addObject("App::Part", _camel(group))
-        part.Label = group.replace("_", " ").capitalize()
+        part = cell.Document.addObject("App::Part", _camel(group))
+        part.Label = label
         cell.addObject(part)
     return part
 

@@ -2,41 +2,39 @@
 
 Proxies hold no state: what an object knows is in its properties, so a document opens, shows its shapes and keeps its
 values in a FreeCAD without this workbench. An impossible value raises in `execute`; FreeCAD marks the object invalid
-with that sentence and leaves everything that depends on it as it was.
+with that sentence and leaves everything that depends on it as it was. What takes long is never computed there: a
+result whose parameters changed says that it is stale, see `lce_workbench.app.results`.
 """
 
 from __future__ import annotations
 
 import importlib
-import json
-import math
 import tomllib
 from collections.abc import Iterable
-from dataclasses import asdict, fields, replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
 import FreeCAD
 
-from lce_solver.errors import InputError
-from lce_solver.types import Design
-from lce_workbench.app.geometry import assembled, stored
+from lce_workbench.app import cells, migrations
+from lce_workbench.app.geometry import assembled
 from lce_workbench.app.properties import declare, properties, read
 from lce_workbench.core import jobfile
-from lce_workbench.core.cell import Prism
+from lce_workbench.core.cell import Cell, Prism
 from lce_workbench.core.job import Job
 
-SCHEMA = 1
-"""Version of the properties; raise it when `setup` has to convert older documents."""
+SCHEMA = len(migrations.STEPS) + 1
+"""Version of the properties."""
 
 SECTIONS: dict[str, type] = {f.name: type(getattr(Job(), f.name)) for f in fields(Job)}
 """Name of a section of the job -> its class."""
 
-DESIGN_SECTIONS = ("target", "material", "sheet", "domains", "solver")
-"""What a design is made from."""
+LABELS = {"plates": "Plate sizes", "spacer": "Spacer sizes", "prediction": "Heating"}
+"""Section -> label of its object, where the section's own name is wanted by something else."""
 
-CELL_SECTIONS = ("sheet", "channels", "plates", "marks", "spacer", "output")
-"""What shapes the cell around a design."""
+FILES = {"target": "mesh", "material": "curve"}
+"""Section -> the parameter that names a file, which the document keeps a copy of."""
 
 EDITABLE, READ_ONLY, HIDDEN = 0, 1, 2
 """FreeCAD's editor modes."""
@@ -51,6 +49,7 @@ class Proxy:
     def __init__(self, obj: Any) -> None:
         obj.Proxy = self
         self.setup(obj)
+        self.show(obj)
 
     def setup(self, obj: Any) -> None:
         """Add the properties that are missing; runs on creation and each time the document is opened."""
@@ -58,7 +57,12 @@ class Proxy:
 
     def onDocumentRestored(self, obj: Any) -> None:  # noqa: N802 - FreeCAD's name
         """Bring an older document up to date; give it a view if it was saved without a window."""
+        migrations.migrate(obj)
         self.setup(obj)
+        self.show(obj)
+
+    def show(self, obj: Any) -> None:
+        """Give the object its view when there is a window; one that was saved with the object stays."""
         module, _, name = self.VIEW.partition(":")
         if FreeCAD.GuiUp and type(obj.ViewObject.Proxy).__name__ != name:
             getattr(importlib.import_module(module), name)(obj.ViewObject)
@@ -84,15 +88,23 @@ def add(obj: Any, kind: str, name: str, doc: str, value: Any = None, *, mode: in
 
 
 class Parameters(Proxy):
-    """One section of the job."""
+    """One section of the job; the target's can take its mesh from another object of the document."""
+
+    VIEW = "lce_workbench.gui.views:ParametersView"
 
     def __init__(self, obj: Any, section: str) -> None:
         add(obj, "App::PropertyString", "Section", "Section of the job file", section, mode=HIDDEN)
         super().__init__(obj)
+        obj.Label = LABELS.get(section, section.capitalize())
 
     def setup(self, obj: Any) -> None:
         super().setup(obj)
         declare(obj, SECTIONS[obj.Section], obj.Section.capitalize())
+        if obj.Section in FILES:
+            add(obj, "App::PropertyFileIncluded", "File", "The file, kept inside this document", mode=READ_ONLY)
+        if obj.Section == "target":
+            add(obj, "App::PropertyLinkSubGlobal", "Source", "A mesh of this document, or a face of a part, as target")
+            add(obj, "App::PropertyLinkListGlobal", "Sizes", "Sheet and domains, which size a face's mesh", mode=HIDDEN)
 
     def onChanged(self, obj: Any, name: str) -> None:  # noqa: N802 - FreeCAD's name
         """Let an optional value be edited only while its tick says that it counts."""
@@ -103,14 +115,18 @@ class Parameters(Proxy):
                 obj.setEditorMode(prop.name, EDITABLE if getattr(obj, name) else READ_ONLY)
 
     def execute(self, obj: Any) -> None:
-        """Check the values.
+        """Check the values; take the mesh from the source.
 
         Raises
         ------
         InputError
-            A value is out of its limits.
+            A value is out of its limits, or the source is no surface.
         """
         jobfile.from_table(tomllib.loads(jobfile.dump(job_of([obj]))))
+        if obj.Section == "target" and obj.Source:
+            from lce_workbench.app.sources import take
+
+            take(obj)
 
 
 def job_of(parameters: Iterable[Any]) -> Job:
@@ -118,68 +134,10 @@ def job_of(parameters: Iterable[Any]) -> Job:
     return replace(Job(), **{obj.Section: read(obj, SECTIONS[obj.Section]) for obj in parameters})
 
 
-class DesignData(Proxy):
-    """The solved design, stored inside the document, and what it was made for."""
-
-    def setup(self, obj: Any) -> None:
-        super().setup(obj)
-        add(obj, "App::PropertyFileIncluded", "File", "The design (design.npz), kept inside this document")
-        add(obj, "App::PropertyLinkListGlobal", "Parameters", "What the design was made from")
-        add(obj, "App::PropertyString", "MadeFor", "Values of these parameters when it was made", mode=HIDDEN)
-        add(obj, "App::PropertyInteger", "Domains", "Number of domains", mode=READ_ONLY)
-        add(obj, "App::PropertyLength", "Width", "Width of the flat sheet (x)", mode=READ_ONLY)
-        add(obj, "App::PropertyLength", "Height", "Height of the flat sheet (y)", mode=READ_ONLY)
-        add(obj, "App::PropertyAngle", "LargestTwist", "Largest twist from bottom to top", mode=READ_ONLY)
-
-    def execute(self, obj: Any) -> None:
-        """Refuse a stale design; show its figures.
-
-        Raises
-        ------
-        InputError
-            A parameter differs from the one that the design was made for, or the file is not a design.
-        """
-        _require_current(obj)
-        design = design_of(obj)
-        obj.Domains = len(design.theta)
-        obj.Width, obj.Height = (design.uv.max(axis=0) - design.uv.min(axis=0)).tolist()
-        obj.LargestTwist = math.degrees(abs(design.dtheta).max())
-
-
-def made_for(job: Job) -> str:
-    """The parameters that the metric depends on, as text. The gap is not among them: the twist is linear in it."""
-    table = {name: asdict(getattr(job, name)) for name in DESIGN_SECTIONS}
-    del table["sheet"]["gap_um"]
-    return json.dumps(table)
-
-
-def _require_current(obj: Any) -> None:
-    """Refuse parameters that the stored design was not made for."""
-    wanted = json.loads(made_for(job_of(obj.Parameters)))
-    for section, values in json.loads(obj.MadeFor).items():
-        for name, value in values.items():
-            now = wanted[section].get(name)
-            if not _same(value, now):
-                msg = (
-                    f"{section}.{name.rstrip('_')} is now {now!r}, but this design was made for {value!r}; "
-                    "run `./lce build` with the new value, or set it back"
-                )
-                raise InputError(msg)
-
-
-def _same(one: Any, other: Any) -> bool:
-    if isinstance(one, float) and isinstance(other, float):
-        return math.isclose(one, other, rel_tol=1e-9)  # FreeCAD keeps 16 decimals
-    return bool(one == other)
-
-
-def design_of(obj: Any) -> Design:
-    """The stored design at the film thickness that the sheet's parameters give now."""
-    return stored(Path(obj.File), job_of(obj.Parameters).sheet.thickness)
-
-
 class Body(Proxy):
     """A part of the cell, or the channels of the chosen domains: the prisms of one name or group."""
+
+    VIEW = "lce_workbench.gui.views:BodyView"
 
     def __init__(self, obj: Any, prisms: str) -> None:
         add(obj, "App::PropertyString", "Prisms", "Name of this part or group in the cell", prisms, mode=HIDDEN)
@@ -205,10 +163,28 @@ class Body(Proxy):
         from lce_workbench.cad.part import solid
 
         prisms = prisms_of(obj)
+        if not prisms:  # an option of the workshop was switched off
+            obj.Shape = Part.Shape()
+            return
         shapes = [solid(prism) for prism in prisms]
         obj.Shape = shapes[0] if len(shapes) == 1 else Part.makeCompound(shapes)
         obj.Colour = prisms[0].colour
         obj.Transparency = _transparency(prisms[0])
+
+
+SHAPED_BY = {
+    "sheet": ("sheet",),
+    "spacer_left": ("sheet", "plates", "marks", "spacer"),
+    "spacer_right": ("sheet", "plates", "marks", "spacer"),
+    "glue_left": ("sheet", "plates", "marks", "spacer"),
+    "glue_right": ("sheet", "plates", "marks", "spacer"),
+    "channels_bottom": ("sheet", "channels", "output"),
+    "channels_top": ("sheet", "channels", "output"),
+}
+"""Name or group of prisms -> the sections that shape them; the plates are shaped by `CELL_SECTIONS`."""
+
+CELL_SECTIONS = ("sheet", "channels", "plates", "marks", "spacer", "output")
+"""What shapes the cell around a design."""
 
 
 def _transparency(prism: Prism) -> int:
@@ -228,5 +204,26 @@ def is_fine(shape: Any) -> bool:
 
 def prisms_of(obj: Any) -> list[Prism]:
     """The prisms that a body consists of."""
-    cell = assembled(Path(obj.Design.File), job_of(obj.Parameters))
+    cell = prisms_around(cells.cell_of(obj.Design))
     return [prism for prism in (*cell.parts, *cell.channels) if obj.Prisms in {prism.name, prism.group}]
+
+
+def prisms_around(cell: Any) -> Cell:
+    """The prisms of a cell with a design; one look at all sections, so that all bodies share it.
+
+    Raises
+    ------
+    InputError
+        The parameters do not go together.
+    """
+    design, job = cells.design_of(cell), job_of(cells.sections(cell).values())
+    return assembled(Path(design.File), job, cells.made_for(design))
+
+
+def __getattr__(name: str) -> Any:
+    """Where documents of schema 1 look for a class that moved."""
+    if name == "DesignData":
+        from lce_workbench.app.results import DesignData
+
+        return DesignData
+    raise AttributeError(name)

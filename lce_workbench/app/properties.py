@@ -27,6 +27,10 @@ TYPES: dict[Any, str] = {
 """Type of a parameter without such a unit -> type of its property."""
 
 
+TAKEN = {"Label": "PrintedLabel"}
+"""Names that every object of FreeCAD has already -> what we use instead."""
+
+
 @dataclass(frozen=True)
 class Property:
     """One parameter of a section and its property."""
@@ -49,7 +53,7 @@ class Property:
         if self.given:
             setattr(obj, self.given, value is not None)
         if value is not None:
-            setattr(obj, self.name, list(value) if isinstance(value, tuple) else self._shifted(value, self.places))
+            setattr(obj, self.name, list(value) if isinstance(value, tuple) else self.shifted(value, self.places))
 
     def read(self, obj: Any) -> Any:
         """Return the parameter's value."""
@@ -59,9 +63,11 @@ class Property:
         plain = getattr(value, "Value", value)  # a quantity, in mm or degrees
         if typing.get_origin(self.kind) is tuple:
             return tuple(plain)
-        return self._shifted(self.kind(plain), -self.places)
+        return self.shifted(self.kind(plain), -self.places)
 
-    def _shifted(self, value: Any, places: int) -> Any:
+    @staticmethod
+    def shifted(value: Any, places: int) -> Any:
+        """The number with its decimal point moved."""
         # Moving the decimal point is exact where a product with 1e-3 is not: 0.7 um is 0.0007 mm and 0.7 um again.
         return float(Decimal(repr(float(value))).scaleb(places)) if places else value
 
@@ -78,6 +84,7 @@ def _property(field: Field[Any], hint: Any) -> Property:
     kind = next(k for k in typing.get_args(hint) if k is not types.NoneType) if optional else hint
     type_, places = UNITS.get(field.metadata["unit"]) or (TYPES[kind], 0)
     name = "".join(word.capitalize() for word in re.sub(r"_(um|mm|deg|C)$", "", field.name).split("_"))
+    name = TAKEN.get(name, name)
     return Property(
         field=field.name,
         name=name,

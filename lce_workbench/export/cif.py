@@ -17,7 +17,6 @@ LAYERS = {
     "PLATE": "PLAT",
     "DOMAINS": "DOMN",
     "SPACER": "SPCR",
-    "SEAM": "SEAM",
 }
 """The format's layer names have at most four characters."""
 

@@ -6,6 +6,9 @@ import FreeCADGui
 
 from lce_workbench import ROOT, packages
 
+FreeCADGui.addLanguagePath(str(ROOT / "resources" / "translations"))
+FreeCADGui.addIconPath(str(ROOT / "resources" / "icons"))
+
 
 class LceWorkbench(FreeCADGui.Workbench):
     """The workbench's entry in FreeCAD's list; its menus and toolbars are made when it is first chosen."""
@@ -16,6 +19,12 @@ class LceWorkbench(FreeCADGui.Workbench):
 
     def Initialize(self) -> None:  # noqa: N802  FreeCAD's name
         packages.append()
+        from lce_workbench.gui.commands import register
+
+        names = register()
+        self.appendToolbar("LCE Mold", [*names, "LCE_Examples"])
+        self.appendMenu("&LCE Mold", [*names, "Separator", "LCE_Examples"])
+        FreeCADGui.addPreferencePage(str(ROOT / "resources" / "preferences.ui"), "LCE Mold")
 
     def GetClassName(self) -> str:  # noqa: N802  FreeCAD's name
         return "Gui::PythonWorkbench"

@@ -2,7 +2,7 @@
 
 import hashlib
 import zipfile
-from dataclasses import fields, replace
+from dataclasses import fields
 
 import document_steps as steps
 import numpy as np
@@ -12,6 +12,8 @@ from freecad_call import FreeCAD
 from PIL import Image
 from processes import display
 
+from lce_solver.bounded import retwisted
+from lce_solver.twist import second_form
 from lce_workbench.core import jobfile
 from lce_workbench.core.closed import closed
 from lce_workbench.core.domains import partition
@@ -138,11 +140,21 @@ def opened(fcstd, tmp_path_factory):
 def test_the_document_is_a_tree_of_named_parts(opened):
     tree = opened["tree"]
     assert tree["Cell"] == []
-    for inside in ("Parameters", "Design", "BottomPlate", "TopPlate", "Spacer", "Sheet", "ChannelsTop"):
+    for inside in (
+        "Design",
+        "Prediction",
+        "Mask",
+        "Review",
+        "BottomPlate",
+        "TopPlate",
+        "Spacer",
+        "Sheet",
+        "ChannelsTop",
+    ):
         assert tree[inside] == ["Cell"]
     assert tree["BottomLand"] == ["BottomPlate"]
     assert tree["SpacerLeft"] == ["Spacer"]
-    assert sum("Parameters" in containers for containers in tree.values()) == len(fields(Job))
+    assert sum(name.endswith("Parameters") for name in tree) == len(fields(Job))
 
 
 def test_bodies_are_the_prisms_of_the_cell(opened):
@@ -160,7 +172,7 @@ def edited(fcstd, tmp_path_factory):
 
 def test_an_edit_of_depth_and_gap_moves_plates_spacer_film_and_channels(edited):
     design = sheets.design()
-    thicker = replace(design, dtheta=design.dtheta * 1.5, thickness=0.15)  # the twist is linear in the thickness
+    thicker = retwisted(design, second_form(design.surface, design.uv), 0.15)
     job = jobfile.parse(JOB, settings=["channels.depth_um=1.5", "sheet.gap_um=150"])
     for state in ("edited", "reopened", "recomputed"):
         assert edited[0][state]["invalid"] == {}
@@ -193,20 +205,27 @@ IMPOSSIBLE = {
         "channels.depth_um is -1 um; it must",
     ),
     "gap of 6 mm": ("SheetParameters", "Gap", "6 mm", "SheetParameters", "sheet.gap_um is 6000 um; it must be at most"),
-    "glass of 3 mm": ("PlatesParameters", "Width", "3 mm", "BottomGlass", "plates.width_mm x height_mm = 3 x"),
+    "glass of 3 mm": ("PlatesParameters", "Width", "3 mm", "BottomGlass", "the plate of 3 x"),
     "domain 999": ("OutputParameters", "StepDomains", [999], "ChannelsTop", "domain 999 does not exist"),
-    "another sheet": ("SheetParameters", "Width", "3 mm", "Design", "sheet.width_mm is now 3.0, but this design was"),
-    "another target": ("TargetParameters", "Flip", True, "Design", "target.flip is now True, but this design was"),
+}
+
+OUTDATED = {
+    "another sheet": ("SheetParameters", "Width", "3 mm", "sheet.width_mm is now 3.0, this was made for 2.2"),
+    "another target": ("TargetParameters", "Flip", True, "target.flip is now True, this was made for False"),
 }
 
 
 def test_an_impossible_value_marks_an_object_with_one_sentence(freecad, fcstd):
     cases = {case: [change[:3]] for case, change in IMPOSSIBLE.items()}
     cases["glass of 3 mm"].append(("PlatesParameters", "WidthGiven", True))
+    cases |= {case: [change[:3]] for case, change in OUTDATED.items()}
     found = freecad.console(steps.attempt, path=fcstd, cases=cases)
     for case, (*_, marked, sentence) in IMPOSSIBLE.items():
         assert sentence in found["said"][case]["invalid"][marked]
         assert found["said"][case]["moved"] == []  # what cannot be computed stays as it was
+    for case, (*_, sentence) in OUTDATED.items():
+        assert found["said"][case]["invalid"] == {}
+        assert found["said"][case]["design"] == ["Design (stale)", f"stale: {sentence}"]
     assert found["end"]["invalid"] == {}
     assert_is_cell(found["end"]["bodies"], sheets.design(), jobfile.parse(JOB))
 
@@ -238,7 +257,7 @@ def test_a_fault_is_one_sentence_and_leaves_no_file(freecad, folder, tmp_path):
     (tmp_path / "design.npz").write_bytes((folder / "design.npz").read_bytes())
     (tmp_path / "job.toml").write_text(JOB + "[plates]\nwidth_mm = 3.0\n")
     sentence, code = freecad.console(steps.run, folder=tmp_path)
-    assert sentence.startswith("plates.width_mm x height_mm = 3 x")
+    assert sentence.startswith("the plate of 3 x")
     assert code == 2
     assert list((tmp_path / "cad").iterdir()) == []
 
@@ -267,7 +286,7 @@ def test_it_opens_visible_and_coloured_and_can_be_edited_in_the_window(freecad, 
     assert "Traceback" not in freecad.said
     assert found["invalid"] == {}
     assert_looks(found["first"], picture)
-    assert found["first"]["TopLand"]["proxy"] == "View"
+    assert found["first"]["TopLand"]["proxy"] == "BodyView"
     assert_looks(found["other"], other)
     again = freecad.console(steps.read_only, path=saved)
     assert_is_cell(again["bodies"], sheets.design(), jobfile.parse(JOB, settings=["channels.depth_um=0.9"]))
@@ -277,4 +296,4 @@ def test_it_opens_visible_and_coloured_without_our_addon(screen, fcstd, tmp_path
     freecad = FreeCAD(tmp_path / "home", addon=False)
     shown = freecad.window(screen, steps.looks, path=fcstd, picture=tmp_path / "view.png")
     assert_looks(shown, tmp_path / "view.png")
-    assert shown["TopLand"]["proxy"] != "View"
+    assert shown["TopLand"]["proxy"] != "BodyView"

@@ -1,0 +1,281 @@
+"""The work on a cell, step by step, as Python functions: what the commands of the window call, and what a script calls.
+
+    from lce_workbench.app import session
+    cell = session.new_cell(FreeCAD.newDocument(), {"target.mesh": "/data/face.obj", "sheet.gap_um": 150.0})
+    session.design(cell)
+    session.predict(cell)
+    session.plates(cell)
+    session.export(cell, "/data")           # /data/cell.toml and /data/out/cell, as `./lce build` writes them
+
+Settings are named as in the job file. Every function checks its input before it changes anything.
+"""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+from lce_solver.errors import InputError
+from lce_workbench.app import cells, child, document, works
+from lce_workbench.app.objects import FILES, SECTIONS, job_of
+from lce_workbench.app.properties import properties
+from lce_workbench.core import jobfile
+from lce_workbench.core.job import Job
+
+Settings = Mapping[str, Any]
+"""``section.key`` -> value; `None` takes an optional value back."""
+
+
+def new_cell(doc: Any, settings: Settings, source: Any = None) -> Any:
+    """Add a cell to a document: its parameters, with the ``settings``. Nothing is solved yet.
+
+    Parameters
+    ----------
+    source : a mesh of the document, or (object, "Face1"), as target.
+
+    Raises
+    ------
+    InputError
+        A setting is unknown or out of its limits.
+    """
+    named = {"target.mesh": "source.off"} if source else {}
+    job = job_with(Job(), {**settings, **named})
+    if not source:
+        _require_files(changes(Job(), job))
+    cell = document.new_cell(doc, job, Path.cwd())
+    if source:
+        objects = cells.sections(cell)
+        objects["target"].Source = source if isinstance(source, tuple) else (source, "")
+        objects["target"].Sizes = [objects["sheet"], objects["domains"]] if isinstance(source, tuple) else []
+    _recompute(cell)
+    return cell
+
+
+def job_with(job: Job, settings: Settings) -> Job:
+    """The job with some values changed, checked as a job file is.
+
+    Raises
+    ------
+    InputError
+        A setting is unknown or out of its limits, or the values contradict each other.
+    """
+    table = tomllib.loads(jobfile.dump(job))
+    for name, value in settings.items():
+        section, _, key = name.partition(".")
+        part = table.setdefault(section, {})
+        part[key] = list(value) if isinstance(value, tuple) else value
+        if value is None:
+            del part[key]
+    return jobfile.parse(jobfile.dump(jobfile.from_table(table, "cell")), "cell")
+
+
+def job(cell: Any) -> Job:
+    """What the cell's parameters say."""
+    return job_of(cells.sections(cell).values())
+
+
+def changes(former: Job, now: Job) -> dict[str, Any]:
+    """The settings that lead from one job to another."""
+    return {
+        f"{section}.{jobfile.toml_name(f)}": getattr(getattr(now, section), f.name)
+        for section in SECTIONS
+        for f in fields(getattr(now, section))
+        if getattr(getattr(now, section), f.name) != getattr(getattr(former, section), f.name)
+    }
+
+
+def set_parameters(cell: Any, settings: Settings) -> None:
+    """Change parameters of a cell and recompute what depends on them; long work becomes stale.
+
+    Raises
+    ------
+    InputError
+        A setting is unknown or out of its limits; nothing is changed.
+    """
+    wanted = job_with(job(cell), settings)
+    objects = cells.sections(cell)
+    _require_files(changes(job(cell), wanted))
+    for name in changes(job(cell), wanted):
+        section, _, key = name.partition(".")
+        part, obj = getattr(wanted, section), objects[section]
+        for prop in properties(SECTIONS[section]):
+            if prop.field.rstrip("_") == key:
+                prop.write(obj, getattr(part, prop.field))
+                if FILES.get(section) == key:
+                    _keep(obj, getattr(part, prop.field))
+    _recompute(cell)
+
+
+def _require_files(settings: Settings) -> None:
+    """Refuse names of files that are not there."""
+    for section, key in FILES.items():
+        name = settings.get(f"{section}.{key}")
+        if name and not Path(name).is_file():
+            msg = f"{section}.{key}: {name} does not exist; choose a {KINDS[section]} file"
+            raise InputError(msg)
+
+
+KINDS = {"target": "mesh", "material": "CSV"}
+"""Section -> what its file is."""
+
+
+def _keep(obj: Any, name: str) -> None:
+    """Copy a file that a section names into the document."""
+    if obj.Section == "target":
+        obj.Source = None
+    obj.File = name if name and Path(name).is_file() else ""
+
+
+def design(cell: Any) -> None:
+    """Solve the flat sheet, its director and twist; minutes.
+
+    Raises
+    ------
+    LceError
+        What the solver says.
+    """
+    now = job(cell)
+    work = child.done(works.design(cell, now))
+    document.take_design(cell, work.out / "design.npz", now, (work.out / "manifest.json").read_text(encoding="utf-8"))
+    _recompute(cell)
+
+
+def predict(cell: Any) -> None:
+    """Simulate the heating of the designed sheet; half a minute.
+
+    Raises
+    ------
+    LceError
+        There is no current design, or what the simulation says.
+    """
+    work = child.done(works.predict(cell, job(cell)))
+    found = json.loads((work.out / "prediction.json").read_text(encoding="utf-8"))
+    obj = document.add_result(cell, "Prediction")
+    obj.File, obj.Verdict, obj.Mirrored = str(work.out / "prediction.npz"), found["verdict"], found["mirrored"]
+    obj.Rms, obj.Max = found["rms_pct"], found["max_pct"]
+    obj.Proxy.remember(obj)
+    _recompute(cell)
+
+
+def plates(cell: Any) -> None:
+    """Add plates, spacer and film around the designed sheet.
+
+    Raises
+    ------
+    InputError
+        There is no design, or the parameters do not go together.
+    """
+    works.require_design(cell)
+    document.add_bodies(cell)
+    _recompute(cell)
+
+
+def channel_window(cell: Any, domains: tuple[int, ...] = ()) -> None:
+    """Show the channels of some domains as solids; () shows the most central domain.
+
+    Raises
+    ------
+    InputError
+        There is no design, a domain does not exist, or the solids would be too many.
+    """
+    works.require_design(cell)
+    set_parameters(cell, {"output.step_domains": tuple(domains)})
+    document.add_window(cell)
+    _recompute(cell)
+
+
+def mask(cell: Any, folder: str) -> None:
+    """Write the masks of both plates, below ``folder``.
+
+    Raises
+    ------
+    LceError
+        There is no current design, or what the check of the masks says.
+    """
+    work = child.done(works.mask(cell, job(cell), Path(folder)))
+    _written(cell, "Mask", work.out)
+
+
+def export(cell: Any, folder: str) -> None:
+    """Write the job file and everything that `./lce build` makes of it, below ``folder``.
+
+    Raises
+    ------
+    LceError
+        There is no current design, or what a stage says.
+    """
+    work = child.done(works.export(cell, job(cell), Path(folder)))
+    _written(cell, "Mask", work.out)
+
+
+def review(cell: Any, folder: str) -> None:
+    """Write everything, review it, and list what was found.
+
+    Raises
+    ------
+    LceError
+        There is no current design, or what a stage says.
+    """
+    work = child.done(works.review(cell, job(cell), Path(folder)))
+    obj = document.add_result(cell, "Review")
+    found = json.loads((work.out / "manifest.json").read_text(encoding="utf-8"))["findings"]
+    obj.Errors, obj.Warnings = (sum(f["severity"] == level for f in found) for level in ("error", "warning"))
+    obj.Findings = [f"{f['severity']}: {f['message']}" for f in found]
+    _written(cell, "Review", work.out)
+
+
+def _written(cell: Any, name: str, out: Path) -> None:
+    obj = document.add_result(cell, name)
+    obj.Folder = str(out)
+    obj.Proxy.remember(obj)
+    _recompute(cell)
+
+
+def drawings(cell: Any, folder: str = "") -> None:
+    """Add the fabrication drawings to the document, or write them as PDF, SVG and DXF to a folder.
+
+    Raises
+    ------
+    LceError
+        There is no current design, or TechDraw does not work.
+    """
+    from lce_workbench.app import drawings as pages
+
+    works.require_design(cell)
+    made = pages.add_pages(cell.Document)
+    if folder:
+        pages.export(made, Path(folder))
+
+
+EXAMPLES: dict[str, Settings] = {
+    "Face": {"target.surface": "face", "sheet.width_mm": 20.0},
+    "Dome": {"target.surface": "dome", "sheet.width_mm": 12.0, "domains.size_um": 400.0},
+    "Saddle": {"target.surface": "saddle", "sheet.width_mm": 12.0, "sheet.gap_um": 150.0},
+    "Leaf": {"target.surface": "leaf", "sheet.width_mm": 15.0, "domains.size_um": 300.0},
+}
+"""Name -> settings of a cell to start from."""
+
+
+def example(doc: Any, name: str) -> Any:
+    """Add one of the examples to a document, ready to be designed.
+
+    Raises
+    ------
+    InputError
+        There is no such example.
+    """
+    if name not in EXAMPLES:
+        msg = f"example {name!r} is unknown; there are {', '.join(EXAMPLES)}"
+        raise InputError(msg)
+    cell = new_cell(doc, EXAMPLES[name])
+    cell.Label = name
+    return cell
+
+
+def _recompute(cell: Any) -> None:
+    """Recompute; a result that became stale only in this pass is told by those that depend on it in the next."""
+    cell.Document.recompute()
