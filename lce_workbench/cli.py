@@ -14,8 +14,9 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import NoReturn
 
+from lce_solver.cut import handles
 from lce_solver.errors import InputError, LceError
-from lce_solver.surface import load
+from lce_solver.surface import boundary_loops, load
 from lce_solver.types import Progress, silent
 from lce_workbench import ROOT, __version__, pipeline
 from lce_workbench.core import align, jobfile
@@ -201,16 +202,19 @@ def _align(args: argparse.Namespace) -> int:
 
 def _new(args: argparse.Namespace) -> int:
     target, out = args.target, args.out or args.target.with_suffix(".toml")
-    _, findings = load(target)
+    surface, findings = load(target, cuts=True)
+    cuts = not (boundary_loops(surface.faces) and handles(surface) == 0)
     if out.exists():
         msg = f"{out} exists; choose another name with --out"
         raise InputError(msg)
-    job = jobfile.with_default_material(replace(Job(), target=Target(mesh=_relative(target, out.parent))))
+    job = jobfile.with_default_material(replace(Job(), target=Target(mesh=_relative(target, out.parent), cuts=cuts)))
     with told(out):
         out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text(jobfile.dump(job, comments=True), encoding="utf-8")
     for finding in findings:
         print(f"{finding.severity.value}: {finding.message}", file=sys.stderr)
+    if cuts:
+        print("info: the surface is closed or has handles, so target.cuts is true: it is cut open", file=sys.stderr)
     print(f"{out} written; look it over, then ./lce build {out}", file=sys.stderr)
     return 0
 

@@ -14,14 +14,18 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from lce_solver.compare import REACH, Comparison, Verdict, compare
+from lce_solver.cut import seams
 from lce_solver.design import design
 from lce_solver.errors import EnvironmentFault, InputError, LceError, SolverError
 from lce_solver.shell import film_of, predict, settle
 from lce_solver.types import Design, Finding, Progress, Severity, silent
 from lce_workbench import ROOT, __version__
+from lce_workbench.cad.step import EXTRAS, told
 from lce_workbench.core import align, jobfile, material, target
-from lce_workbench.core.cell import choose, select
+from lce_workbench.core.cell import Cell, choose, select, wanted
 from lce_workbench.core.channels import ChannelField, Channels, empty_domains
 from lce_workbench.core.closed import closed
 from lce_workbench.core.domains import PLATES, Plate
@@ -33,10 +37,12 @@ from lce_workbench.core.marks import fingerprint
 from lce_workbench.core.mask import compose
 from lce_workbench.core.mask_checks import check
 from lce_workbench.core.partition import FOLDED, divide
+from lce_workbench.core.replication import replicated
 from lce_workbench.core.sampling import as_made
 from lce_workbench.core.units import UM
 from lce_workbench.divided import arrays, read_domains
 from lce_workbench.export import EXPORTERS
+from lce_workbench.export.outlines import OUTLINES
 from lce_workbench.export.pictures import write_pictures
 from lce_workbench.export.table import write_table
 from lce_workbench.former import retwist
@@ -112,10 +118,11 @@ def _require_formats(job: Job) -> None:
     if not job.output.masks:
         msg = f"output.masks is empty; name at least one of {', '.join(EXPORTERS)}"
         raise InputError(msg)
-    for name in job.output.masks:
-        if name not in EXPORTERS:
-            msg = f"output.masks: format {name!r} is unknown; known are {', '.join(EXPORTERS)}"
-            raise InputError(msg)
+    for key, known in (("masks", tuple(EXPORTERS)), ("cad", ("domains", *EXTRAS, *OUTLINES))):
+        for name in getattr(job.output, key):
+            if name not in known:
+                msg = f"output.{key}: format {name!r} is unknown; known are {', '.join(known)}"
+                raise InputError(msg)
 
 
 def exit_code(records: Sequence[Mapping[str, Any]]) -> int:
@@ -134,7 +141,7 @@ def run_design(run: Run) -> Findings:
     plain = job.domains.kind == "triangles" and not job.channels.align_phase
     write_design(result, run.folder / "design.npz", {} if plain else arrays(domains))
     fields = {plate: ChannelField(domains, plate, job.channels) for plate in PLATES}
-    choose(domains, fields, job.output.step_domains)  # told before anything else is computed
+    choose(domains, fields, wanted(domains, job.output))  # told before anything else is computed
     write_table(domains, [fields[plate].counts for plate in PLATES], run.folder / "domains.csv")
     return (*said, *target.sized(result, job), *divided, *sheet_findings(job))
 
@@ -211,11 +218,11 @@ def run_mask(run: Run) -> Findings:
     folder.mkdir()
     code = fingerprint(domains, run.job.channels)
     (folder / "readings.csv").write_text(align.form(frame, run.job, code), encoding="ascii")
-    found: list[Finding] = [*left_out(frame, run.job)]
+    found: list[Finding] = [*left_out(frame, run.job), *replicated(run.job.plates.replications)]
     masks, counted = {}, {}
     for k, plate in enumerate(PLATES):
         field = ChannelField(domains, plate, run.job.channels)
-        masks[plate] = mask = compose(frame, field, run.job)
+        masks[plate] = mask = compose(frame, field, run.job, plan.uv[seams(plan.surface).reshape(-1, 2)])
         found += (*empty_domains(field), *check(mask, field, frame, run.job))
         counted[plate] = totals(mask)
         for j, name in enumerate(run.job.output.masks):
@@ -250,7 +257,6 @@ def fabricable(plan: Design) -> Design:
 def run_cad(run: Run) -> Findings:
     """Build the cell: `cad/*.step`, `cad/cell.glb`, `cad/cell.FCStd`."""
     from lce_workbench.cad.checks import check as measure
-    from lce_workbench.cad.instances import estimate
     from lce_workbench.cad.step import write_cad
 
     job, folder = run.job, run.folder / "cad"
@@ -262,16 +268,46 @@ def run_cad(run: Run) -> Findings:
     solids: dict[Plate, Iterable[Channels]] = dict(fields)
     if job.output.step == "chosen":
         solids = {plate: [select(part, cell.chosen) for part in field] for plate, field in fields.items()}
-    expected = estimate(sum(len(part) for parts in solids.values() for part in parts), job.output.step_instances)
-    run.progress(f"cad: {expected.message}", 0.0)
+    expected = _expected(cell, solids, job)
+    run.progress("cad: " + "; ".join(finding.message for finding in expected), 0.0)
     write_cad(cell, solids, job, folder, lambda stage, done: run.progress(stage, 0.7 * done))
+    write_outlines(cell, plan, run)
     run.progress("cad: checks", 0.7)
     found = measure(cell, solids, arrange(plan.uv, job), job, folder)
     if job.output.freecad:
         run.progress("cad/cell.FCStd", 0.9)
         run_freecad("document", run.folder, run.folder / "cad" / "cell.FCStd")
     run.progress("cad", 1.0)
-    return (expected, *found)
+    return (*expected, *found)
+
+
+def _expected(cell: Cell, solids: Mapping[Plate, Iterable[Channels]], job: Job) -> Findings:
+    """What each level of detail will cost."""
+    from lce_workbench.cad.instances import estimate
+
+    way = "exact" if job.output.step == "exact" else job.output.step_instances
+    counts = {
+        "comb": sum(len(prism.holes) for prism in (*cell.parts, *cell.combs)),
+        "domain": len(cell.domains) if "domains" in job.output.cad else 0,
+        way: sum(len(part) for parts in solids.values() for part in parts),
+    }
+    return tuple(estimate(kind, count) for kind, count in counts.items() if count)
+
+
+def write_outlines(cell: Cell, plan: Design, run: Run) -> None:
+    """Write the drawings of `OUTLINES`, and the heated sheet if it was predicted."""
+    from lce_workbench.cad.meshes import thickened, write_stl
+
+    folder, wanted_files = run.folder / "cad", run.job.output.cad
+    for name, write in OUTLINES.items():
+        if name in wanted_files:
+            with told(folder / f"outlines.{name}"):
+                write(cell, folder / f"outlines.{name}")
+    prediction, path = run.folder / "prediction.npz", folder / "sheet_actuated.stl"
+    if "sheet" in wanted_files and prediction.is_file():
+        heated = np.load(prediction)["vertices"]
+        with told(path):
+            write_stl(*thickened(heated, plan.surface.faces, plan.thickness * plan.material.across), path)
 
 
 def run_freecad(command: str, folder: Path, made: Path) -> None:

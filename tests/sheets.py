@@ -68,12 +68,16 @@ PLAIN = Job(marks=Marks(grating=False, fields=("depth",)))
 """A job with few polygons outside the sheet, on every layer."""
 
 
+SEAM = np.array([[[0.0, 0.0], [0.3, 0.4]]])
+"""A line on the layer that only cut sheets have."""
+
+
 def both_masks(domains, job=None, room=0.0):
     """Frame, channels and masks of both plates; the frame is laid out for a sheet of ``room`` mm at least."""
     job = job or Job()
     frame = arrange(np.concatenate([domains.vertices, np.array([[-room, -room], [room, room]]) / 2]), job)
     channels = {plate: hatch(domains, plate, job.channels) for plate in ("bottom", "top")}
-    masks = {plate: compose(frame, ChannelField(domains, plate, job.channels), job) for plate in channels}
+    masks = {plate: compose(frame, ChannelField(domains, plate, job.channels), job, SEAM) for plate in channels}
     return frame, channels, masks
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from sheets import lattice
 
+from lce_solver.mesher import mesh
 from lce_solver.types import Material, Surface
 
 LCE = Material(0.6, 0.5)
@@ -77,3 +78,16 @@ def turned_over(surface):
 def line_difference(a, b, period=np.pi):
     """Smallest difference of angles modulo ``period``."""
     return np.abs((a - b + period / 2) % period - period / 2)
+
+
+def cap(degrees, edge=0.06, radius=1.0):
+    """Spherical cap of a half angle, from a conformal map of the unit disk."""
+    half = np.radians(degrees)
+
+    def embed(uv):
+        r = np.linalg.norm(uv, axis=1)
+        angle = 2 * np.arctan(np.tan(half / 2) * r)
+        x, y = uv.T * np.sin(angle) / np.where(r > 0, r, 1)
+        return radius * np.column_stack([x, y, np.cos(angle)])
+
+    return mesh(embed, lambda t: np.column_stack([np.cos(2 * np.pi * t), np.sin(2 * np.pi * t)]), edge)

@@ -12,7 +12,7 @@ import numpy as np
 from lce_solver.types import Finding, Floats, Severity
 from lce_workbench.cad.reread import channels_in, solids_in, tally, volume_of
 from lce_workbench.cad.solids import solid
-from lce_workbench.cad.step import CHANNEL_FILES, FILES, stored_as
+from lce_workbench.cad.step import CHANNEL_FILES, files, stored_as
 from lce_workbench.core.cell import Cell
 from lce_workbench.core.channels import Channels
 from lce_workbench.core.domains import PLATES, Plate
@@ -54,10 +54,18 @@ def check(
         _interference(cell.parts, shapes),
         _gap(shapes, job),
         _marks(cell, frame),
-        *(_parts_in(folder / name, pick(cell)) for name, pick in FILES.items() if name.endswith(".step")),
+        *(_parts_in(folder / name, pick(cell)) for name, pick in files(job).items() if name.endswith(".step")),
     ]
     for name, plate in CHANNEL_FILES.items():
-        found.append(_channels_in(channels[plate], folder / stored_as(name, job), job.output.step_instances))
+        path = folder / stored_as(name, job)
+        if job.output.step == "exact":
+            written = sum(tally(each)["solids"] for each in folder.glob(path.name.replace(".", "_*.", 1)))
+            found.append(_counted(path, "channels", written, sum(map(len, channels[plate]))))
+        else:
+            found.append(_channels_in(channels[plate], path, job.output.step_instances))
+    if "domains" in job.output.cad:
+        path = folder / "domains.step"
+        found.append(_counted(path, "domains", tally(path)["faces"], len(cell.domains)))
     return tuple(found)
 
 

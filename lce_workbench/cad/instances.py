@@ -10,16 +10,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from lce_solver.types import Finding, Floats, Ints, Severity
 from lce_workbench.cad.brep import write_solids
-from lce_workbench.cad.part21 import PRODUCT, Part21, Product, real
+from lce_workbench.cad.part21 import PRODUCT, Part21, Product, part21, real
 from lce_workbench.core.cell import LOOKS, domain_name
-from lce_workbench.core.channels import BLOCK, STEPS_PER_MM, Channels
+from lce_workbench.core.channels import BLOCK, STEPS_PER_MM, Channels, slanted
 from lce_workbench.core.domains import SIDE
+from lce_workbench.core.job import Job
 from lce_workbench.core.polyhedron import polyhedron
 from lce_workbench.core.prism import Prism
 
@@ -47,20 +49,22 @@ REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(@2)SHAPE_REPRESENTATION_RELATION
 @6=CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(@3,@5);
 """
 
-BYTES: dict[str, int] = {"mapped": 200, "assembly": 520}
-"""Size of one channel in the file, with its share of the boxes."""
+COSTS: dict[str, tuple[str, float, float]] = {
+    "comb": ("holes in the lands and combs of both plates", 8e3, 4e-4),
+    "domain": ("domain outlines", 1.8e3, 1e-4),
+    "mapped": ("channel solids of both plates", 200, 3e-6),
+    "assembly": ("channel solids of both plates, as components,", 520, 8e-6),
+    "exact": ("channel solids of both plates, each exact,", 5.2e3, 2e-4),
+}
+"""What there are many of -> in words, bytes of one in its file, and seconds of a common processor to write it."""
 
-SECONDS: dict[str, float] = {"mapped": 4e-6, "assembly": 9e-6}
-"""Time to write one channel on a common machine."""
 
-
-def estimate(channels: int, way: str) -> Finding:
-    """Size and time of the channel solids, to be told before they are written."""
-    megabytes, seconds = channels * BYTES[way] / 1e6, channels * SECONDS[way]
-    text = (
-        f"{channels} channel solids of both plates take about {megabytes:.3g} MB of STEP and {seconds:.2g} s to write"
-    )
-    return Finding("cad_estimate", Severity.INFO, text, megabytes, unit="MB")
+def estimate(kind: str, count: int) -> Finding:
+    """Size and time of a level of detail, to be told before it is written."""
+    words, size, time = COSTS[kind]
+    megabytes = count * size / 1e6
+    text = f"{count} {words} take about {megabytes:.3g} MB of STEP and {count * time:.2g} s to write"
+    return Finding("cad_estimate", Severity.INFO, text, megabytes, unit="MB", where=kind)
 
 
 def write_channels(out: Part21, parts: Iterable[Channels], gap: float, way: str) -> None:
@@ -79,6 +83,40 @@ def write_channels(out: Part21, parts: Iterable[Channels], gap: float, way: str)
         products = WAYS[way](out, block, boxes)
         out.place(products, root)
         out.validate(products, *block.properties)
+
+
+def write_exact(parts: Iterable[Channels], outlines: Floats, job: Job, path: Path) -> None:
+    """Write each channel as a solid of its own, its ends along the domain's border, a file for 64 domains each.
+
+    Parameters
+    ----------
+    outlines : (n_d, 3, 2) corners of all domains [mm].
+    path : ``channels_top.step`` becomes ``channels_top_0000.step`` and so on.
+
+    Raises
+    ------
+    OSError
+        A file cannot be written.
+    """
+    for part in _regrouped(parts):
+        block = _Block(part, job.sheet.thickness)
+        stem, dot, suffix = path.name.partition(".")
+        with part21(path.with_name(f"{stem}_{block.domains[0] // BLOCK:04d}{dot}{suffix}")) as out:
+            root = out.product(out.name)
+            solids = _slanted(out, block, slanted(part, outlines, job.channels.guard))
+            out.place(out.products(block.names, block.split(solids)), root)
+
+
+def _slanted(out: Part21, block: _Block, rings: Floats) -> Ints:
+    """Write a prism over each ring (n, 4, 2)."""
+    z0 = block.z
+    unit = np.array([(-1.0, -1), (1, -1), (1, 1), (-1, 1)])
+    one = polyhedron([Prism("one", unit, (), z0, z0 + block.channels.depth, *LOOKS["channel"])])
+    corner = np.array([np.flatnonzero((unit == xy).all(axis=1))[0] for xy in one.points[:, :2]])
+    bodies = [replace(one, points=np.column_stack([ring[corner], one.points[:, 2]])) for ring in rings]
+    solids = write_solids(out, np.repeat(block.names, block.counts).tolist(), bodies)
+    out.paint(solids, *LOOKS["channel"])
+    return solids
 
 
 def _regrouped(parts: Iterable[Channels]) -> Iterator[Channels]:

@@ -16,6 +16,7 @@ OPENERS: dict[str, Any] = {".gz": gzip.open}
 
 KEYWORDS = {
     "solids": b"=MANIFOLD_SOLID_BREP(",
+    "faces": b"=OPEN_SHELL(",
     "mapped": b"=MAPPED_ITEM(",
     "placed": b"=NEXT_ASSEMBLY_USAGE_OCCURRENCE(",
     "products": b"=PRODUCT(",

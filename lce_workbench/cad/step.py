@@ -12,8 +12,10 @@ from lce_solver.errors import EnvironmentFault
 from lce_solver.types import Progress, silent
 from lce_workbench.cad.brep import write_solids
 from lce_workbench.cad.glb import write_glb
-from lce_workbench.cad.instances import write_channels
+from lce_workbench.cad.instances import write_channels, write_exact
+from lce_workbench.cad.meshes import printed, write_3mf, write_stl
 from lce_workbench.cad.part21 import Part21, Product, part21
+from lce_workbench.cad.sheet import write_domains
 from lce_workbench.core.cell import Cell
 from lce_workbench.core.channels import Channels
 from lce_workbench.core.domains import PLATES, Plate
@@ -32,6 +34,19 @@ FILES: dict[str, Callable[[Cell], Sequence[Prism]]] = {
 }
 """File -> the prisms in it, all in the cell's coordinates."""
 
+EXTRAS: dict[str, dict[str, Callable[[Cell], Sequence[Prism]]]] = {
+    "sheet": {"sheet.step": lambda cell: [part for part in cell.parts if part.name == "sheet"]},
+    "stl": {f"{plate}_plate.stl": FILES[f"{plate}_plate.step"] for plate in PLATES},
+    "3mf": {f"{plate}_plate.3mf": FILES[f"{plate}_plate.step"] for plate in PLATES},
+}
+"""Name in `output.cad` -> file -> the prisms in it."""
+
+
+def files(job: Job) -> dict[str, Callable[[Cell], Sequence[Prism]]]:
+    """`FILES` and the `EXTRAS` that the job asks for."""
+    return FILES | {file: pick for name in job.output.cad for file, pick in EXTRAS.get(name, {}).items()}
+
+
 CHANNEL_FILES: dict[str, Plate] = {f"channels_{plate}.step": plate for plate in PLATES}
 """File -> the plate whose channels are the solids in it."""
 
@@ -43,7 +58,7 @@ def write_cad(
     folder: Path,
     progress: Progress = silent,
 ) -> None:
-    """Write every entry of `FILES` and `CHANNEL_FILES` into ``folder``, the same bytes for the same cell.
+    """Write every entry of `files` and `CHANNEL_FILES` into ``folder``, the same bytes for the same cell.
 
     Parameters
     ----------
@@ -54,17 +69,26 @@ def write_cad(
     EnvironmentFault
         A file cannot be written.
     """
-    n = len(FILES) + len(CHANNEL_FILES)
-    for i, (name, pick) in enumerate(FILES.items()):
+    wanted = files(job)
+    n = len(wanted) + len(CHANNEL_FILES)
+    for i, (name, pick) in enumerate(wanted.items()):
         progress(f"cad/{name}", i / n)
         path = folder / name
         with told(path):
             WRITERS[path.suffix](pick(cell), path)
-    for i, (name, plate) in enumerate(CHANNEL_FILES.items(), len(FILES)):
+    for i, (name, plate) in enumerate(CHANNEL_FILES.items(), len(wanted)):
         path = folder / stored_as(name, job)
         progress(f"cad/{path.name}", i / n)
-        with told(path), part21(path) as out:
-            write_channels(out, channels[plate], job.sheet.thickness, job.output.step_instances)
+        with told(path):
+            if job.output.step == "exact":
+                write_exact(channels[plate], cell.domains.corners, job, path)
+            else:
+                with part21(path) as out:
+                    write_channels(out, channels[plate], job.sheet.thickness, job.output.step_instances)
+    if "domains" in job.output.cad:
+        path = folder / "domains.step"
+        with told(path):
+            write_domains(cell.domains, path)
 
 
 def stored_as(name: str, job: Job) -> str:
@@ -96,7 +120,12 @@ def _product(out: Part21, stack: Sequence[Prism]) -> Product:
     return product
 
 
-WRITERS: dict[str, Callable[[Sequence[Prism], Path], None]] = {".step": write_step, ".glb": write_glb}
+WRITERS: dict[str, Callable[[Sequence[Prism], Path], None]] = {
+    ".step": write_step,
+    ".glb": write_glb,
+    ".stl": lambda prisms, path: write_stl(*printed(prisms), path),
+    ".3mf": lambda prisms, path: write_3mf(*printed(prisms), path),
+}
 """Suffix -> writer."""
 
 

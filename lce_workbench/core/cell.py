@@ -26,7 +26,7 @@ from lce_solver.types import Floats
 from lce_workbench.core.channels import ChannelField, Channels, corners
 from lce_workbench.core.domains import PLATES, SIDE, Domains, Plate
 from lce_workbench.core.frame import Frame, Rect
-from lce_workbench.core.job import Job
+from lce_workbench.core.job import Job, Output
 from lce_workbench.core.marks import fingerprint
 from lce_workbench.core.merge import merged
 from lce_workbench.core.prism import Colour, Prism
@@ -70,6 +70,8 @@ class Cell:
     """The land of each chosen domain with all its channels, grouped as ``combs_bottom`` and ``combs_top``."""
     chosen: tuple[int, ...]
     """The domains whose channels are solids."""
+    domains: Domains
+    """Those of the sheet in it."""
 
     def group(self, name: str) -> tuple[Prism, ...]:
         """The prisms of one assembly."""
@@ -95,7 +97,7 @@ def assemble(
     InputError
         A chosen domain does not exist or has no channels, or the solids would be too many.
     """
-    chosen = choose(domains, channels, job.output.step_domains)
+    chosen = choose(domains, channels, wanted(domains, job.output))
     gap, code = job.sheet.thickness, fingerprint(domains, job.channels)
     trenches = {plate: {k: corners(channels[plate], _rows(channels[plate], k)) for k in chosen} for plate in PLATES}
     cut = _few_enough(channels, chosen)
@@ -104,7 +106,7 @@ def assemble(
         for plate in PLATES
     )
     between = (-gap / 2, gap / 2)
-    film = _part("sheet", "film", [domains.outline], between)
+    film = _part("sheet", "film", [domains.outline, *domains.holes], between)
     spacer = _pair("spacer", "mylar", frame.strips, between)
     glue = _pair("glue", "glue", beads(frame, job), between)
     solids = [
@@ -118,13 +120,47 @@ def assemble(
         for plate, rings in trenches.items()
         for k in chosen
     ]
-    return Cell((*bottom[::-1], *spacer, *glue, film, *top, *_jig(frame, job)), tuple(solids), tuple(combs), chosen)
+    return Cell(
+        (*bottom[::-1], *spacer, *glue, film, *top, *_jig(frame, job)), tuple(solids), tuple(combs), chosen, domains
+    )
+
+
+def wanted(domains: Domains, output: Output) -> tuple[int, ...]:
+    """The domains that the job names, and those that its window touches.
+
+    Raises
+    ------
+    InputError
+        The window is not four numbers, or touches no domain.
+    """
+    if not output.step_window_um:
+        return output.step_domains
+    if len(output.step_window_um) != 4:
+        msg = f"output.step_window_um has {len(output.step_window_um)} numbers; give x0, y0, x1, y1"
+        raise InputError(msg)
+    window = np.array(output.step_window_um).reshape(2, 2) * UM
+    rect = Rect(*window.min(axis=0), *window.max(axis=0)).ring
+    touched = np.flatnonzero([_meet(corners, rect) for corners in domains.corners])
+    if not len(touched):
+        msg = "output.step_window_um lies outside the sheet, whose middle is 0, 0; move it"
+        raise InputError(msg)
+    return tuple(sorted({*output.step_domains, *touched.tolist()}))
+
+
+def _meet(one: Floats, other: Floats) -> bool:
+    """Whether two convex polygons share a point: no edge of either separates them."""
+    for ring in (one, other):
+        edge = np.roll(ring, -1, axis=0) - ring
+        for normal in np.stack([edge[:, 1], -edge[:, 0]], axis=1):
+            if (other @ normal).min() > (one @ normal).max() or (one @ normal).min() > (other @ normal).max():
+                return False
+    return True
 
 
 def choose(
-    domains: Domains, channels: Mapping[Plate, Channels | ChannelField], wanted: Sequence[int]
+    domains: Domains, channels: Mapping[Plate, Channels | ChannelField], named: Sequence[int]
 ) -> tuple[int, ...]:
-    """The domains whose channels become solids: those ``wanted``, or the most central one.
+    """The domains whose channels become solids: those ``named``, or the most central one.
 
     Raises
     ------
@@ -132,17 +168,17 @@ def choose(
         A domain does not exist or has no channels, or the solids would exceed `MAX_SOLIDS`.
     """
     counts = np.array([channels[plate].counts for plate in PLATES])
-    if not wanted:
+    if not named:
         far = np.linalg.norm(domains.centroid, axis=1)
         return (int(np.argmin(np.where(counts.all(axis=0), far, np.inf))),)
-    for domain in wanted:
+    for domain in named:
         if not 0 <= domain < len(domains):
             msg = f"output.step_domains: domain {domain} does not exist; the sheet has 0 to {len(domains) - 1}"
             raise InputError(msg)
         if not counts[:, domain].all():
             msg = f"output.step_domains: domain {domain} is too small for a channel; choose another"
             raise InputError(msg)
-    chosen = tuple(sorted(set(wanted)))
+    chosen = tuple(sorted(set(named)))
     _require_budget(int(counts[:, chosen].sum()))
     return chosen
 

@@ -26,6 +26,7 @@ from lce_solver.errors import InputError
 from lce_solver.types import Finding, Floats, Ints, Severity
 from lce_workbench.core.domains import PLATES, Domains, Plate, signed_area
 from lce_workbench.core.job import ChannelSpec
+from lce_workbench.core.units import UM
 
 Bools = NDArray[np.bool_]
 
@@ -145,6 +146,26 @@ def corners(channels: Channels, rows: slice = slice(None)) -> Floats:
     """Corners (n, 4, 2) of the channels in ``rows``, counter-clockwise [mm]; the first edge runs along the channel."""
     angle = channels.angle[channels.domain[rows]]
     return rectangles(channels.centre[rows], channels.length[rows], angle, channels.width)
+
+
+def slanted(channels: Channels, outlines: Floats, guard: float) -> Floats:
+    """Corners (n, 4, 2) of the channels with their ends along the domains' inset borders instead of square [mm].
+
+    Parameters
+    ----------
+    outlines : (n_d, k, 2) corners of all domains [mm].
+    guard : inset of the borders [mm].
+
+    Approximate: where a corner of the border lies inside a strip, the tip beyond the strip's sides is left out.
+    """
+    angle = channels.angle[channels.domain]
+    local = _turn(outlines[channels.domain] - channels.centre[:, None], -angle[:, None])
+    half = channels.width / 2
+    y = np.broadcast_to([-half, half], (len(channels), 2))
+    left, right = _ends(local, y, ChannelSpec(width_um=0.0, guard_um=guard / UM))
+    x = np.stack([left[:, 0], right[:, 0], right[:, 1], left[:, 1]], axis=1)
+    ring = np.stack([x, np.broadcast_to([-half, -half, half, half], x.shape)], axis=2)
+    return np.asarray(_turn(ring, angle[:, None]) + channels.centre[:, None])
 
 
 def rectangles(centre: Floats, length: Floats, angle: Floats, width: float) -> Floats:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from lce_solver.types import Design, Ints
-from lce_workbench.core.cell import Cell, assemble
+from lce_workbench.core.cell import Cell, assemble, wanted
 from lce_workbench.core.channels import Channels, hatch
 from lce_workbench.core.domains import PLATES, Domains, Plate
 from lce_workbench.core.frame import arrange
@@ -35,7 +35,7 @@ def closed(design: Design, domains: Domains, job: Job) -> Cell:
 
 def _shown(domains: Domains, job: Job) -> Ints:
     """The domains that can become solids: those the job chooses, or the most central ones."""
-    chosen = np.unique(np.array(job.output.step_domains, dtype=np.int64))
+    chosen = np.unique(np.array(wanted(domains, job.output), dtype=np.int64))
     chosen = chosen[(chosen >= 0) & (chosen < len(domains))]  # `assemble` refuses the others
     if len(chosen):
         return chosen

@@ -32,6 +32,8 @@ class Domains:
     """(n_d, 2) stretch flat -> target along and across the director."""
     outline: Floats = field(default_factory=lambda: np.empty((0, 2)))
     """(n, 2) rim of the sheet, counter-clockwise; when none is given, the rim of the triangles [mm]."""
+    holes: tuple[Floats, ...] = ()
+    """Rims (k, 2) of the sheet's holes, clockwise [mm]."""
     phase: Floats = field(default_factory=lambda: np.empty((0, 2)))
     """(n_d, 2) how far to the left of the origin a channel's mid-line runs, modulo the pitch, on the bottom and on the
     top plate [mm]; (0, 2) where every domain centres its channels for itself."""
@@ -49,8 +51,10 @@ class Domains:
         ):
             object.__setattr__(self, name, owned(getattr(self, name), name, dtype, *shape))
         if n and not len(self.outline) and self.polygons.shape[1] == 3:
-            rim = self.vertices[boundary_loops(self.polygons)[0]]
+            rims = [self.vertices[loop] for loop in boundary_loops(self.polygons)]
+            rim, *holes = sorted(rims, key=lambda ring: float(signed_area(ring[None])[0]), reverse=True)
             object.__setattr__(self, "outline", owned(rim, "outline", np.float64, None, 2))
+            object.__setattr__(self, "holes", tuple(owned(hole, "holes", np.float64, None, 2) for hole in holes))
 
     def __len__(self) -> int:
         return len(self.polygons)

@@ -50,6 +50,9 @@ class Target:
     remesh: bool = param(
         True, "mesh the target anew, with even triangles of the domains' size; false keeps the triangles of the input"
     )
+    cuts: bool = param(
+        False, "cut the target open where it is closed, has handles or is too curved; the sheet then has seams"
+    )
     flip: bool = param(False, "turn the surface over, so that its other side becomes the top of the sheet")
 
 
@@ -176,6 +179,12 @@ class Plates:
     )
     height_mm: float | None = param(None, "glass height (y)", unit="mm", above=0.0, high=200.0)
     glass_mm: float = param(1.0, "glass thickness", unit="mm", above=0.0, high=20.0)
+    replications: int = param(
+        2,
+        "casts from master to plate: PDMS, epoxy; an odd number turns handedness and relief",
+        low=0,
+        high=9,
+    )
     epoxy_um: float = param(50.0, "epoxy layer under the channels", unit="um", above=0.0, high=5000.0)
     chamfer_mm: float = param(0.0, "chamfer of the glass's outer edges, at 45 deg", unit="mm", low=0.0, high=5.0)
     release_deg: float = param(
@@ -254,11 +263,20 @@ class Output:
     overlay_y_um: float = param(-3.0, "the same along y", unit="um")
     writer_um: float = param(0.8, "smallest line and land of the laser writer's mode", unit="um", above=0.0, high=100.0)
     freecad: bool = param(True, "write the FreeCAD document cad/cell.FCStd (needs freecadcmd)")
+    cad: tuple[str, ...] = param(
+        ("domains", "sheet", "stl", "3mf", "svg", "dxf"),
+        "further CAD files: domains (outlines named with their angles), sheet (flat, and as predicted when heated), "
+        "stl, 3mf (plates, patterned face up, for a microprinter), svg, dxf (outlines of all parts, true mm)",
+    )
     step_domains: tuple[int, ...] = param((), "domains whose channels become solids; default: the most central")
+    step_window_um: tuple[int, ...] = param(
+        (), "x0, y0, x1, y1 [um] of a window: the domains that it touches become solids too"
+    )
     step: str = param(
         "chosen",
-        "channel solids in cad/channels_*.step: those of step_domains, or all (some 200 MB a plate of 20 mm)",
-        choices=("chosen", "all"),
+        "channel solids in cad/channels_*.step: of the chosen domains; all (some 250 MB a plate of 20 mm); or exact, "
+        "each a solid of its own with its ends along the domain's border (some 6 GB, in files of 64 domains)",
+        choices=("chosen", "all", "exact"),
     )
     step_instances: str = param(
         "mapped",

@@ -28,11 +28,16 @@ LAYERS: dict[str, int] = {
     "PLATE": 10,
     "DOMAINS": 11,
     "SPACER": 12,
+    "SEAM": 13,
 }
 """Layer names (DXF) and numbers (GDSII, datatype 0), in the order in which they are written."""
 
 EXPOSED = ("CHANNELS", "MARKS", "LABELS", "TEST")
 """Layers that the laser writes; the others are for orientation."""
+
+NO_SEAMS = np.empty((0, 2, 2))
+SEAM_WIDTH = 0.01
+"""Width of the lines that show a seam [mm]."""
 
 NAMES: dict[Plate, str] = {"bottom": "LCE_BOTTOM", "top": "LCE_TOP"}
 
@@ -43,7 +48,7 @@ class Mask:
 
     plate: Plate
     layers: Mapping[str, Iterable[Nanometres]]
-    """Polygons of each layer of `LAYERS`, as arrays (n, k, 2); convex, counter-clockwise [nm].
+    """Polygons of each layer of `LAYERS`, as arrays (n, k, 2); convex, counter-clockwise [nm]. ``SEAM`` may be missing.
 
     ``CHANNELS`` comes in the blocks of a `ChannelField`, each an array (n, 4, 2) that exists only while it is used;
     the first edge runs along the channel. Every layer can be gone through many times.
@@ -88,8 +93,8 @@ class WrittenChannels:
         return (written(corners(part), part.plate) for part in self.field)
 
 
-def compose(frame: Frame, field: ChannelField, job: Job) -> Mask:
-    """Everything on the master of the field's plate.
+def compose(frame: Frame, field: ChannelField, job: Job, seams: Floats = NO_SEAMS) -> Mask:
+    """Everything on the master of the field's plate, with the sheet's ``seams`` (k, 2, 2), segments [mm].
 
     The top plate is mirrored, because its patterned face looks down in the cell. Resist -> PDMS -> epoxy mirrors
     twice, so a master has the handedness of its epoxy plate.
@@ -110,7 +115,17 @@ def compose(frame: Frame, field: ChannelField, job: Job) -> Mask:
     layers: dict[str, Iterable[Nanometres]] = {name: (written(shape, plate),) for name, shape in shapes.items()}
     layers["DOMAINS"] = tuple(written(rings, plate) for _, rings in field.domains.rings())
     layers["CHANNELS"] = WrittenChannels(field)
-    return Mask(plate, {name: layers[name] for name in LAYERS})
+    if len(seams):
+        layers["SEAM"] = (written(_lines(seams), plate),)
+    return Mask(plate, {name: layers[name] for name in LAYERS if name in layers})
+
+
+def _lines(segments: Floats) -> Floats:
+    """(k, 4, 2) segments (k, 2, 2) as rectangles of `SEAM_WIDTH`."""
+    along = segments[:, 1] - segments[:, 0]
+    side = along[:, ::-1] * (-1, 1) / np.linalg.norm(along, axis=1, keepdims=True) * SEAM_WIDTH / 2
+    start, end = segments[:, 0], segments[:, 1]
+    return np.stack([start - side, end - side, end + side, start + side], axis=1)
 
 
 def _refuse_too_fine(job: Job) -> None:

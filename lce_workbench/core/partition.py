@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from lce_solver.errors import InputError
 from lce_solver.judge import rms, stretch_errors
 from lce_solver.types import Design, Finding, Severity, Status, line_angle
 from lce_workbench.core.borders import Borders, borders
@@ -28,12 +29,15 @@ def divide(design: Design, job: Job) -> tuple[Domains, tuple[Finding, ...]]:
     Raises
     ------
     InputError
-        The sheet is too small for one domain.
+        The sheet is too small for one domain, or has holes and is not cut into triangles.
     """
     domains, kind = partition(design), job.domains.kind
     if design.flattening.status in FOLDED:
         return domains, ()  # no mold is made of it
     if kind in TESSELLATIONS:
+        if domains.holes:
+            msg = f"domains.kind = {kind!r} cannot tile a sheet with holes; let domains.kind be 'triangles'"
+            raise InputError(msg)
         domains = sample(design, TESSELLATIONS[kind](domains.outline, job.domains.size))
     found = borders(domains)
     report = [_sizes(domains), _steps(domains, found)]

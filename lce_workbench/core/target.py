@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from lce_solver.cut import opened, proposed, seams
 from lce_solver.errors import InputError
 from lce_solver.metric import Stop, flatten, lay_flat
 from lce_solver.mirror import even_mesh
@@ -41,15 +42,23 @@ def _shipped(job: Job, material: Material) -> tuple[Surface, tuple[Finding, ...]
         msg = f"target.surface {name!r} is unknown; shipped are {', '.join(SURFACES)}"
         raise InputError(msg)
     coarse = SURFACES[name](COARSE)
+    cuts = _cuts(coarse, job, material)
+    coarse = opened(coarse, cuts)
     edge = job.domains.size / (flat_edge(coarse, job, material) / mean_edge(coarse))
     _require_budget(coarse, edge)
-    return even_mesh(SURFACES[name](edge), edge) if job.target.remesh else SURFACES[name](edge), ()
+    fine = even_mesh(SURFACES[name](edge), edge) if job.target.remesh else SURFACES[name](edge)
+    return opened(fine, cuts), ()
+
+
+def _cuts(trial: Surface, job: Job, material: Material) -> tuple[Floats, ...]:
+    return proposed(trial, material) if job.target.cuts else ()
 
 
 def _meshed(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Finding, ...]]:
-    surface, found = load(base / job.target.mesh)
+    surface, found = load(base / job.target.mesh, cuts=job.target.cuts)
     if job.target.remesh:
         return _resampled(surface, job, material), found
+    surface = opened(surface, _cuts(surface, job, material))
     size, flat = job.domains.size, flat_edge(surface, job, material)
     if flat <= size:
         return surface, found
@@ -65,9 +74,10 @@ def _meshed(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Fi
 def _resampled(surface: Surface, job: Job, material: Material) -> Surface:
     """Even triangles of the domains' size, whatever the input's: a trial with about `TRIAL` of them gives the scale."""
     trial = even_mesh(surface, float(np.sqrt(4 / np.sqrt(3) * face_areas(surface).sum() / TRIAL)))
-    edge = job.domains.size * mean_edge(trial) / flat_edge(trial, job, material)
+    cuts = _cuts(trial, job, material)
+    edge = job.domains.size * mean_edge(trial) / flat_edge(opened(trial, cuts), job, material)
     _require_budget(surface, edge)
-    return even_mesh(surface, edge)
+    return opened(even_mesh(surface, edge), cuts)
 
 
 def _require_budget(surface: Surface, edge: float) -> None:
@@ -104,4 +114,22 @@ def sized(design: Design, job: Job) -> tuple[Finding, ...]:
     fine = edge_um < 0.5 * asked
     if fine:
         text += "; the mesh is finer than the domains, let target.remesh be true or ask for smaller domains"
-    return (Finding("domain_edge", Severity.WARNING if fine else Severity.INFO, text, edge_um, asked, "um"),)
+    return (
+        Finding("domain_edge", Severity.WARNING if fine else Severity.INFO, text, edge_um, asked, "um"),
+        *cut(design),
+    )
+
+
+def cut(design: Design) -> tuple[Finding, ...]:
+    """Where the sheet has seams: edges that meet again when it is heated."""
+    pairs = seams(design.surface)
+    if len(pairs) == 0:
+        return ()
+    ends = design.uv[pairs[:, 0]]
+    length = float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum())
+    x, y = ends[0, 0]
+    text = (
+        f"the target is cut open along {length:.1f} mm of the sheet's outline, to which as much of it must be joined "
+        "when it is heated; the masks show the seam on layer SEAM"
+    )
+    return (Finding("seam", Severity.INFO, text, length, unit="mm", where=f"outline at ({x:.2f}, {y:.2f}) mm"),)

@@ -17,6 +17,7 @@ LAYERS = {
     "PLATE": "PLAT",
     "DOMAINS": "DOMN",
     "SPACER": "SPCR",
+    "SEAM": "SEAM",
 }
 """The format's layer names have at most four characters."""
 

@@ -98,7 +98,7 @@ def _document(mask: Mask) -> tuple[str, str, str, int]:
 
     count, low, high = _survey(mask)
     stream = io.StringIO()
-    with _fixed_stamps():
+    with fixed_stamps():
         document = ezdxf.new("R2000", units=MICRONS)
         for name, number in LAYERS.items():
             document.layers.add(name, color=number)
@@ -113,7 +113,7 @@ def _document(mask: Mask) -> tuple[str, str, str, int]:
 
 
 @contextmanager
-def _fixed_stamps() -> Iterator[None]:
+def fixed_stamps() -> Iterator[None]:
     """Make ezdxf write fixed time stamps and identifiers, so that the bytes depend on the mask alone."""
     from ezdxf import options
 

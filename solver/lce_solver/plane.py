@@ -19,15 +19,33 @@ SAME = 1e-6
 
 
 def convex_map(surface: Surface) -> Floats:
-    """Map a disk to a circle of its area: boundary by arc length, inside by mean-value weights.
+    """Map a disk, with or without holes, to a circle of its area: outline by arc length, inside by mean-value weights.
 
-    Positive weights and a convex boundary make it injective for every mesh (Tutte 1963, Floater 2003).
+    Positive weights and a convex boundary make it injective for every mesh (Tutte 1963, Floater 2003); holes are filled
+    for that with triangles around their centre. The outline is the longest boundary.
 
     Returns
     -------
     (n_v, 2) flat coordinates, in the surface's unit of length.
     """
-    loop = max(boundary_loops(surface.faces), key=len)
+    whole, loop = _filled(surface)
+    return _circle_map(whole, loop)[: len(surface.vertices)]
+
+
+def _filled(surface: Surface) -> tuple[Surface, Ints]:
+    """The surface with its holes filled by fans, and its outline."""
+    *holes, outline = sorted(boundary_loops(surface.faces), key=lambda loop: _length(surface.vertices[loop]))
+    n = len(surface.vertices)
+    centres = [surface.vertices[hole].mean(axis=0) for hole in holes]
+    fan = [np.column_stack([hole, np.full(len(hole), n + k), np.roll(hole, -1)]) for k, hole in enumerate(holes)]
+    return Surface(np.vstack([surface.vertices, *centres]), np.concatenate([surface.faces, *fan])), outline
+
+
+def _length(ring: Floats) -> float:
+    return float(np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1).sum())
+
+
+def _circle_map(surface: Surface, loop: Ints) -> Floats:
     sides = np.linalg.norm(surface.vertices[np.roll(loop, -1)] - surface.vertices[loop], axis=1)
     angle = 2 * np.pi * (np.cumsum(sides) - sides) / sides.sum()
     circle = np.sqrt(face_areas(surface).sum() / np.pi) * np.column_stack([np.cos(angle), np.sin(angle)])

@@ -1,4 +1,4 @@
-"""The target surface: from a mesh file to one oriented disk of triangles, or to a sentence that names what is wrong."""
+"""The target surface: from a mesh file to one oriented piece of triangles, or to a sentence that says what is wrong."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ FARTHEST = 1e100
 """Coordinates from here on would overflow when squared and cubed."""
 
 
-def load(path: str | Path) -> tuple[Surface, tuple[Finding, ...]]:
-    """Read a mesh file, weld what its format tore apart, orient its triangles and check that it is a disk.
+def load(path: str | Path, *, cuts: bool = False) -> tuple[Surface, tuple[Finding, ...]]:
+    """Read a mesh file, weld what its format tore apart, orient its triangles and check that it can be laid flat.
 
     STL repeats every corner, so its corners are always welded. OBJ, PLY and OFF state which triangles share a vertex;
     that stands if it makes the mesh one piece with one boundary (vertices that coincide are then the two sides of a
@@ -47,6 +47,7 @@ def load(path: str | Path) -> tuple[Surface, tuple[Finding, ...]]:
     Parameters
     ----------
     path : an ``.stl``, ``.obj``, ``.ply`` or ``.off`` file, in any unit of length.
+    cuts : whether the surface may be closed or have handles, because it will be cut open.
 
     Returns
     -------
@@ -63,15 +64,15 @@ def load(path: str | Path) -> tuple[Surface, tuple[Finding, ...]]:
         _check_elements(mesh.vertices, mesh.faces)
         torn = path.suffix.lower() == ".stl" or not _one_disk(mesh.faces)
         faces, findings = _welded(mesh) if torn else (mesh.faces, _cuts(mesh))
-        surface = check(mesh.vertices, faces)
+        surface = check(mesh.vertices, faces, cuts=cuts)
     except InputError as fault:
         msg = f"{path.name}: {fault}"
         raise InputError(msg) from fault
     return surface, (_summary(path, surface), *findings, *_repairs(mesh, faces, surface))
 
 
-def check(vertices: Floats, faces: Ints) -> Surface:
-    """Return the mesh as one oriented disk, without its unused vertices.
+def check(vertices: Floats, faces: Ints, *, cuts: bool = False) -> Surface:
+    """Return the mesh as one oriented disk, with or without holes, without its unused vertices.
 
     Triangles keep their order; the minority that faces the other way is turned over.
 
@@ -79,6 +80,7 @@ def check(vertices: Floats, faces: Ints) -> Surface:
     ----------
     vertices : (n_v, 3) positions.
     faces : (n_f, 3) vertex indices.
+    cuts : whether it may be closed or have handles, because it will be cut open.
 
     Raises
     ------
@@ -90,7 +92,7 @@ def check(vertices: Floats, faces: Ints) -> Surface:
     for test in (_check_areas, _check_duplicates, _check_edges, _check_pieces):
         test(vertices, faces)
     faces = _oriented(vertices, faces)
-    for test in (_check_closed, _check_fans, _check_boundary):
+    for test in (_check_fans,) if cuts else (_check_closed, _check_fans, _check_handles):
         test(vertices, faces)
     used, renumbered = np.unique(faces, return_inverse=True)
     return Surface(vertices[used], renumbered.reshape(-1, 3))
@@ -186,7 +188,7 @@ def _check_closed(vertices: Floats, faces: Ints) -> None:
     if not (count == 1).any():
         msg = (
             f"the surface is closed: no edge is open, beginning with {_triangle(vertices, faces, 0)}; a flat sheet "
-            "needs an outline, so delete the part that you do not need or cut the mesh open"
+            "needs an outline, so delete the part that you do not need, cut the mesh open, or let target.cuts be true"
         )
         raise InputError(msg)
 
@@ -205,26 +207,16 @@ def _check_fans(vertices: Floats, faces: Ints) -> None:
         raise InputError(msg)
 
 
-def _check_boundary(vertices: Floats, faces: Ints) -> None:
-    loops = sorted(boundary_loops(faces), key=lambda loop: _length(vertices, loop), reverse=True)
-    if len(loops) > 1:
-        lengths = ", ".join(f"{_length(vertices, loop):.4g}" for loop in loops[:5]) + (", ..." if loops[5:] else "")
-        msg = (
-            f"the surface has {len(loops)} boundaries, of length {lengths}, where a sheet has one outline; fill the "
-            f"hole at vertex {loops[1][0]} at {_at(vertices[loops[1][0]])}, or cut from it to the outline"
-        )
-        raise InputError(msg)
+def _check_handles(vertices: Floats, faces: Ints) -> None:
     euler = len(np.unique(faces)) - len(edges(faces)) + len(faces)
-    if euler != 1:
+    whole = 2 - len(boundary_loops(faces))
+    if euler != whole:
         msg = (
-            f"the surface has {(1 - euler) // 2} handle(s) like a torus (Euler characteristic {euler}, a disk has 1), "
-            f"beginning with {_triangle(vertices, faces, 0)}; cut the handles open or remove them"
+            f"the surface has {(whole - euler) // 2} handle(s) like a torus (Euler characteristic {euler}, without "
+            f"them {whole}), beginning with {_triangle(vertices, faces, 0)}; cut the handles open, remove them, or "
+            "let target.cuts be true"
         )
         raise InputError(msg)
-
-
-def _length(vertices: Floats, loop: Ints) -> float:
-    return float(np.linalg.norm(vertices[loop] - vertices[np.roll(loop, 1)], axis=1).sum())
 
 
 def _size(vertices: Floats, faces: Ints) -> float:
@@ -296,10 +288,15 @@ def _cuts(mesh: RawMesh) -> list[Finding]:
 def _summary(path: Path, surface: Surface) -> Finding:
     longest = float(np.ptp(surface.vertices, axis=0).max())
     message = (
-        f"{path.name}: {len(surface.faces)} triangles, {len(surface.vertices)} vertices, one outline; the longest side "
-        f"of {longest:g} may be in any unit, for the width of the sheet fixes the size"
+        f"{path.name}: {len(surface.faces)} triangles, {len(surface.vertices)} vertices, {_rims(surface)}; the "
+        f"longest side of {longest:g} may be in any unit, for the width of the sheet fixes the size"
     )
     return Finding("mesh_read", Severity.INFO, message, value=float(len(surface.faces)), unit="triangles")
+
+
+def _rims(surface: Surface) -> str:
+    holes = len(boundary_loops(surface.faces)) - 1
+    return ("closed", "one outline")[holes + 1] if holes < 1 else f"one outline and {holes} hole(s)"
 
 
 def _repairs(mesh: RawMesh, faces: Ints, surface: Surface) -> list[Finding]:

@@ -87,9 +87,14 @@ def flips(faces: Ints) -> NDArray[np.bool_] | None:
     return ~turned if 2 * turned.sum() > n else turned
 
 
-def fans(faces: Ints) -> Ints:
-    """(3 n_f,) number of the fan of each corner (as half-edges are numbered): corners joined by edges at a vertex."""
-    pairs, _ = neighbours(faces)
+def fans(faces: Ints, cut: NDArray[np.bool_] | None = None) -> Ints:
+    """(3 n_f,) number of the fan of each corner (as half-edges are numbered): corners joined by edges at a vertex.
+
+    Edges of ``cut`` (n_e,) join nothing.
+    """
+    pairs, edge = neighbours(faces)
+    if cut is not None:
+        pairs = pairs[~cut[edge]]
     n = len(faces)
     corner, follower = np.arange(3 * n), np.roll(np.arange(3 * n), -n)
     ends = half_edges(faces)

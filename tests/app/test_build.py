@@ -34,9 +34,11 @@ size_um = 300.0
 
 CLUSTERS = sorted(f"mask/cluster_{place.replace(' ', '_')}.png" for place in PLACES)
 CONTRACT = [
-    "cad/bottom_plate.step", "cad/cell.FCStd", "cad/cell.glb", "cad/cell.step", "cad/channels_bottom.step",
-    "cad/channels_top.step", "cad/combs_bottom.step", "cad/combs_top.step", "cad/spacer.step",
-    "cad/top_plate.step", "design.npz", "domains.csv", "job.toml",
+    "cad/bottom_plate.3mf", "cad/bottom_plate.step", "cad/bottom_plate.stl", "cad/cell.FCStd", "cad/cell.glb",
+    "cad/cell.step", "cad/channels_bottom.step", "cad/channels_top.step", "cad/combs_bottom.step", "cad/combs_top.step",
+    "cad/domains.step", "cad/outlines.dxf", "cad/outlines.svg", "cad/sheet.step", "cad/sheet_actuated.stl",
+    "cad/spacer.step",
+    "cad/top_plate.3mf", "cad/top_plate.step", "cad/top_plate.stl", "design.npz", "domains.csv", "job.toml",
     "manifest.json", "mask/border.png", "mask/bottom.dxf", "mask/bottom.gds", "mask/bottom.oas", *CLUSTERS,
     "mask/domain.png", "mask/job_sheet.txt", "mask/overlay.png", "mask/overview.png", "mask/readings.csv",
     "mask/top.dxf", "mask/top.gds", "mask/top.oas", "prediction.json", "prediction.npz",

@@ -49,7 +49,7 @@ def test_all_channels(benchmark, channels, tmp_path):
     size = path.stat().st_size / 1e6
     benchmark.extra_info.update(channels=len(channels), megabytes=round(size), times_faster=round(theirs / ours))
     assert size < 250
-    assert estimate(len(channels), "mapped").value == pytest.approx(size, rel=0.1)
+    assert estimate("mapped", len(channels)).value == pytest.approx(size, rel=0.1)
     assert channels_in(path, "mapped") == len(channels)
     assert theirs > 500 * ours
 

@@ -11,7 +11,7 @@ from lce_workbench.core.cell import Cell, assemble, select
 from lce_workbench.core.channels import Channels, hatch
 from lce_workbench.core.domains import PLATES, Domains, Plate
 from lce_workbench.core.frame import arrange
-from lce_workbench.core.job import Job, Output, Sheet
+from lce_workbench.core.job import Job, Output, Plates, Sheet
 
 PITCH = 0.03
 """Side of the square that two domains share [mm]."""
@@ -43,9 +43,13 @@ def job(chosen: tuple[int, ...] = (), gap_um: float = 100.0) -> Job:
     return replace(Job(), sheet=Sheet(width_mm=0.15, gap_um=gap_um), output=Output(step_domains=chosen))
 
 
-def cell(chosen: tuple[int, ...] = (24, 25), gap_um: float = 100.0) -> Cell:
+WORKSHOP = Plates(chamfer_mm=0.3, release_deg=10.0, notch_mm=2.0, engraving_um=100.0, frame_mm=4.0)
+"""Every option at once."""
+
+
+def cell(chosen: tuple[int, ...] = (24, 25), gap_um: float = 100.0, plates: Plates | None = None) -> Cell:
     """The sheet of `domains` with a cross at each corner of both plates, and one more on the top plate."""
-    sheet, wanted = domains(), job(chosen, gap_um)
+    sheet, wanted = domains(), replace(job(chosen, gap_um), plates=plates or Plates())
     frame = arrange(sheet.vertices, wanted)
     bottom = np.concatenate([cross(*centre) for centre in frame.marks[:4]])
     top = np.concatenate([bottom, cross(frame.marks[0, 0], 0.0)])

@@ -36,7 +36,7 @@ def made(tmp_path_factory):
 @pytest.fixture
 def unread(monkeypatch):
     """Leave the files of parts unread, which takes a kernel seconds."""
-    monkeypatch.setattr("lce_workbench.cad.checks.FILES", {})
+    monkeypatch.setattr("lce_workbench.cad.checks.files", lambda job: {})
 
 
 def errors(made, **changes):
@@ -49,7 +49,7 @@ def test_a_sound_cell_has_no_error_and_is_measured(made):
     found = check(*made)
     assert all(f.severity is Severity.INFO for f in found)
     assert {f.check for f in found} == {"cad_kernel", "cad_interference", "cad_gap", "cad_marks", "cad_step"}
-    assert len([f for f in found if f.check == "cad_step"]) == 8
+    assert len([f for f in found if f.check == "cad_step"]) == 10
 
 
 def moved(cell, name, shift=(0.0, 0.0), dz=0.0):

@@ -55,7 +55,7 @@ def test_one_flat_cell_of_polygons_on_a_nanometre_grid(sheet, plate):
     assert [cell.name for cell in layout.each_cell()] == [f"LCE_{plate.upper()}"]
     assert layout.dbu == 0.001
     found = {(info.layer, info.datatype) for info in layout.layer_infos()}
-    assert found == {(1, 0), (2, 0), (3, 0), (4, 0), (10, 0), (11, 0), (12, 0)}
+    assert found == {(1, 0), (2, 0), (3, 0), (4, 0), (10, 0), (11, 0), (12, 0), (13, 0)}
     cell = layout.top_cell()
     assert cell.child_instances() == 0
     for index in layout.layer_indexes():

@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 from sheets import both_masks, design
 
+from lce_solver.types import Severity
 from lce_workbench.core.domains import partition
+from lce_workbench.core.replication import advice, replicated, settings
 from lce_workbench.export import gdsii
 
 DEPTH = 600.0
@@ -98,3 +100,35 @@ def test_an_unmirrored_top_would_be_wrong(chain):
     domain, _ = domain_of(mounted * [-1, 1, 1], domains)
     expected = domains.theta + domains.dtheta / 2
     assert line_error(directions(mounted, domain, len(domains)), expected) > 10
+
+
+@pytest.mark.parametrize("casts", range(5))
+@pytest.mark.parametrize(("plate", "side"), [("bottom", -1), ("top", 1)])
+def test_with_the_stated_settings_any_number_of_casts_gives_the_same_plates(chain, casts, plate, side):
+    """Files -> converter -> resist -> casts -> mounted plate, with what `settings` says for this number of casts."""
+    domains, _, masters = chain
+    said = settings(casts)
+    points = masters[plate] * [-1 if said.mirror else 1, 1, 1]
+    for _ in range(casts):
+        points = cast(points)
+    mounted = points if plate == "bottom" else turned_over(points)
+    # a trench lies beyond the face, inside its plate; a ridge stands into the film
+    assert np.all(np.sign(mounted[..., 2]) == (side if said.trenches else -side))
+    ordered = mounted[:, ::-1] if said.mirror else mounted
+    domain, _ = domain_of(ordered, domains)
+    assert (domain >= 0).all()
+    expected = domains.theta + side * domains.dtheta / 2
+    assert line_error(directions(ordered, domain, len(domains)), expected) < 1e-3
+    assert said.mirrored[plate] == (said.mirror != (plate == "top"))
+
+
+def test_one_cast_more_or_less_says_which_flags_change():
+    assert advice(2) == advice(4) == advice(0) == ()
+    for casts in (1, 3):
+        said = " ".join(advice(casts))
+        assert "mirror x ON for both plates" in said
+        assert "bottom mirrored, top not mirrored" in said
+        assert "ridges" in said
+        (finding,) = replicated(casts)
+        assert finding.severity is Severity.WARNING
+    assert replicated(2) == ()

@@ -4,26 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from targets import cap
 
 from lce_solver.feasible import bounded, feasible_lambda, gaussian_curvature, length_bound, longest
-from lce_solver.mesher import mesh
 from lce_solver.surfaces import SURFACES
 from lce_solver.types import Material, Severity, Surface
 
 MATTER = Material(0.6, 0.5, "test")
-
-
-def cap(degrees, edge=0.06, radius=1.0):
-    """Spherical cap of a half angle, from a conformal map of the unit disk."""
-    half = np.radians(degrees)
-
-    def embed(uv):
-        r = np.linalg.norm(uv, axis=1)
-        angle = 2 * np.arctan(np.tan(half / 2) * r)
-        x, y = uv.T * np.sin(angle) / np.where(r > 0, r, 1)
-        return radius * np.column_stack([x, y, np.cos(angle)])
-
-    return mesh(embed, lambda t: np.column_stack([np.cos(2 * np.pi * t), np.sin(2 * np.pi * t)]), edge)
 
 
 @pytest.mark.parametrize("degrees", [40, 60, 75, 90])

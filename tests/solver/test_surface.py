@@ -82,8 +82,7 @@ def test_a_cut_that_the_file_states_stays_open(tmp_path, name, open_):
         assert found(findings)["mesh_cut"].severity is Severity.WARNING
         assert found(findings)["mesh_cut"].value == 2
     else:
-        with pytest.raises(InputError, match="2 boundaries"):
-            load(tmp_path / name)
+        assert len(boundary_loops(load(tmp_path / name)[0].faces)) == 2
 
 
 def test_relative_indices_and_comments_of_obj(tmp_path):
@@ -143,7 +142,7 @@ def test_a_bad_mesh_is_named_with_a_remedy(name, scale):
 
 
 @pytest.mark.parametrize("name", ["plain.obj", "plain.ply"])
-@pytest.mark.parametrize("fault", ["not finite", "index", "no area", "three at an edge", "annulus"])
+@pytest.mark.parametrize("fault", ["not finite", "index", "no area", "three at an edge", "handle"])
 def test_a_bad_file_is_named_too(tmp_path, name, fault):
     make, element, remedy = BAD_MESHES[fault]
     vertices, faces = make()
