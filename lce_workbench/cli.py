@@ -113,6 +113,8 @@ def _parser() -> Parser:
             metavar="DIR",
             help="output folder whose flat sheet to take: only the twist is solved",
         )
+        if name == "build":
+            _scheduler(sub)
     for name, doc in (
         ("predict", "Simulates the heating of a designed sheet and compares it with the target."),
         ("mask", "Draws the masks of a designed folder."),
@@ -120,6 +122,8 @@ def _parser() -> Parser:
     ):
         sub = command(name, _stage, doc)
         sub.add_argument("folder", type=Path, metavar="DIR")
+        if name == "mask":
+            _scheduler(sub)
     checked = command("verify", _verify, "Reads the written files back and compares them with the design.")
     checked.add_argument("folder", type=Path, metavar="DIR")
     readings = command("align", _align, "From mark readings to shift, rotation, scale and the worst mismatch.")
@@ -128,6 +132,14 @@ def _parser() -> Parser:
     new.add_argument("target", type=Path, metavar="TARGET")
     new.add_argument("--out", type=Path, metavar="JOB.toml", help="default: TARGET with the ending .toml")
     return parser
+
+
+def _scheduler(sub: argparse.ArgumentParser) -> None:
+    sub.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="Dask scheduler whose workers write and check the masks: the same bytes; they need the same folders",
+    )
 
 
 def _demo(args: argparse.Namespace) -> int:
@@ -150,8 +162,9 @@ def _run(
     args: argparse.Namespace, job: Job, base: Path, out: Path, names: list[str], *, metric: Path | None = None
 ) -> int:
     progress, close = _progress(args)
+    scheduler = getattr(args, "scheduler", None)
     try:
-        code = pipeline.build(job, base, out, names, progress, metric=metric)
+        code = pipeline.build(job, base, out, names, progress, metric=metric, scheduler=scheduler)
     finally:
         close()
     _tell(args, out, names, code)

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, version
+from itertools import repeat
 from pathlib import Path
 from typing import Any
 
@@ -24,18 +25,17 @@ from lce_solver.shell import film_of, predict, settle
 from lce_solver.types import Design, Finding, Progress, Severity, silent
 from lce_workbench import ROOT, __version__
 from lce_workbench.cad.step import EXTRAS, told
+from lce_workbench.cluster import client, each
 from lce_workbench.core import align, jobfile, material, target
 from lce_workbench.core.cell import Cell, choose, select, wanted
-from lce_workbench.core.channels import ChannelField, Channels, empty_domains
+from lce_workbench.core.channels import ChannelField, Channels
 from lce_workbench.core.closed import closed
 from lce_workbench.core.domains import PLATES, Plate
 from lce_workbench.core.fields import left_out
 from lce_workbench.core.frame import arrange
 from lce_workbench.core.job import Job
-from lce_workbench.core.job_sheet import job_sheet, totals
+from lce_workbench.core.job_sheet import job_sheet
 from lce_workbench.core.marks import fingerprint
-from lce_workbench.core.mask import compose
-from lce_workbench.core.mask_checks import check
 from lce_workbench.core.partition import FOLDED, divide
 from lce_workbench.core.replication import replicated
 from lce_workbench.core.sampling import as_made
@@ -58,6 +58,7 @@ from lce_workbench.outputs import (
     write_manifest,
     write_prediction,
 )
+from lce_workbench.plates import Sheet, expose, measure
 
 Findings = tuple[Finding, ...]
 
@@ -73,15 +74,25 @@ class Run:
     progress: Progress = silent
     metric: Path | None = None
     """Output folder whose flat sheet and director are taken, or `None`: they are solved."""
+    scheduler: str | None = None
+    """Address of the Dask scheduler whose workers draw the masks, or `None`: this process does."""
 
 
 def build(
-    job: Job, base: Path, out: Path, names: Sequence[str], progress: Progress = silent, *, metric: Path | None = None
+    job: Job,
+    base: Path,
+    out: Path,
+    names: Sequence[str],
+    progress: Progress = silent,
+    *,
+    metric: Path | None = None,
+    scheduler: str | None = None,
 ) -> int:
     """Run the stages ``names`` of one job into ``out``; return the exit code.
 
     The first stage is ``design``; without it ``out`` must hold one, and its other files are kept. ``metric`` is an
     output folder of a job that differs in nothing the metric depends on: its solution is taken instead of solved anew.
+    ``scheduler`` is the address of a Dask scheduler whose workers draw the masks, into the same bytes.
 
     Raises
     ------
@@ -98,7 +109,7 @@ def build(
     records = [r for r in former.get("findings", ()) if r["stage"] not in names]
     with staged(out, replaced=None if anew else [output for name in names for output in OUTPUTS[name]]) as folder:
         for name in names:
-            findings = STAGES[name](Run(folder, job, base, progress, metric))
+            findings = STAGES[name](Run(folder, job, base, progress, metric, scheduler))
             records += [as_record(finding, name) for finding in findings]
         code = exit_code(records)
         write_manifest(
@@ -219,18 +230,20 @@ def run_mask(run: Run) -> Findings:
     code = fingerprint(domains, run.job.channels)
     (folder / "readings.csv").write_text(align.form(frame, run.job, code), encoding="ascii")
     found: list[Finding] = [*left_out(frame, run.job), *replicated(run.job.plates.replications)]
-    masks, counted = {}, {}
-    for k, plate in enumerate(PLATES):
-        field = ChannelField(domains, plate, run.job.channels)
-        masks[plate] = mask = compose(frame, field, run.job, plan.uv[seams(plan.surface).reshape(-1, 2)])
-        found += (*empty_domains(field), *check(mask, field, frame, run.job))
-        counted[plate] = totals(mask)
-        for j, name in enumerate(run.job.output.masks):
-            run.progress(f"mask {plate}.{name}", (k + j / len(run.job.output.masks)) / len(PLATES))
-            EXPORTERS[name](mask, folder / f"{plate}.{name}")
+    sheet, masks = Sheet(frame, domains, run.job, plan.uv[seams(plan.surface).reshape(-1, 2)]), run.job.output.masks
+    sheet.mask("bottom")  # what it refuses is told before any file is written
+    pairs = [(plate, name) for plate in PLATES for name in masks]
+    with client(run.scheduler) as workers:
+        files = each(workers, expose, repeat(sheet), *zip(*pairs, strict=True), repeat(folder))
+        for k, name in enumerate(files):
+            run.progress(f"mask {name}", k / len(pairs))
+        measured = dict(zip(PLATES, each(workers, measure, repeat(sheet), PLATES), strict=True))
+    found += [finding for findings, _ in measured.values() for finding in findings]
+    counted = {plate: total for plate, (_, total) in measured.items()}
     output = run.job.output
     if output.pictures:
-        write_pictures(frame, domains, masks, folder, (output.overlay_x_um * UM, output.overlay_y_um * UM))
+        drawn = {plate: sheet.mask(plate) for plate in PLATES}
+        write_pictures(frame, domains, drawn, folder, (output.overlay_x_um * UM, output.overlay_y_um * UM))
     (folder / "job_sheet.txt").write_text(job_sheet(frame, run.job, counted, code), encoding="ascii")
     run.progress("mask", 1.0)
     return tuple(found)
