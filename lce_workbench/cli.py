@@ -19,7 +19,7 @@ from lce_solver.errors import InputError, LceError
 from lce_solver.surface import boundary_loops, load
 from lce_solver.types import Progress, silent
 from lce_workbench import ROOT, __version__, pipeline
-from lce_workbench.core import align, jobfile
+from lce_workbench.core import align, feasibility, jobfile
 from lce_workbench.core.job import Job, Target
 from lce_workbench.outputs import has_error, read_manifest, told
 
@@ -126,6 +126,11 @@ def _parser() -> Parser:
             _scheduler(sub)
     checked = command("verify", _verify, "Reads the written files back and compares them with the design.")
     checked.add_argument("folder", type=Path, metavar="DIR")
+    tried = command(
+        "feasibility", _feasibility, "Tries many lambdas, or temperatures, on a coarse mesh of a job's target."
+    )
+    tried.add_argument("job", type=Path, metavar="JOB.toml")
+    tried.add_argument("--set", nargs="+", action="extend", default=[], metavar="KEY=VALUE", dest="settings")
     readings = command("align", _align, "From mark readings to shift, rotation, scale and the worst mismatch.")
     readings.add_argument("readings", type=Path, metavar="READINGS.csv")
     new = command("new", _new, "Writes a commented job file for a mesh.")
@@ -211,6 +216,19 @@ def _align(args: argparse.Namespace) -> int:
             print(f"{name:20} {numbers[name]:10.4f} +- {numbers[f'{name}_95']:.4f} (95 %)")
         print("pass" if found.passed else "fail" + (": the readings contradict each other" if found.unlikely else ""))
     return 0 if found.passed else 1
+
+
+def _feasibility(args: argparse.Namespace) -> int:
+    progress, close = _progress(args)
+    try:
+        found = feasibility.survey(jobfile.load(args.job, args.settings), args.job.parent, progress)
+    finally:
+        close()
+    if getattr(args, "json", False):
+        print(json.dumps(feasibility.told(found)))
+    else:
+        print(feasibility.table(found), end="")
+    return 0 if found.best else 1
 
 
 def _new(args: argparse.Namespace) -> int:

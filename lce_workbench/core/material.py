@@ -60,6 +60,19 @@ def from_curve(path: Path, temperature: float) -> Material:
 
     nu = -ln(lambda_perpendicular) / ln(lambda_parallel), so that lambda^-nu is the measured stretch across.
     """
+    along, across = measured(path, temperature)
+    nu = -math.log(across) / math.log(along) if along != 1.0 else 0.0
+    return Material(along, nu, f"{path.name} at {temperature:g} C")
+
+
+def measured(path: Path, temperature: float) -> tuple[float, float]:
+    """Both stretches of a measured curve at ``temperature`` [degC], along and across the director.
+
+    Raises
+    ------
+    InputError
+        The curve cannot be read, or ends before the temperature.
+    """
     rows = np.array(_rows(path))
     order = np.argsort(rows[:, 0])
     degrees, along, across = rows[order].T
@@ -72,9 +85,18 @@ def from_curve(path: Path, temperature: float) -> Material:
             f"({degrees[0]:g} to {degrees[-1]:g} C); measure further or choose a temperature inside"
         )
         raise InputError(msg)
-    stretch = [float(np.interp(temperature, degrees, column)) for column in (along, across)]
-    nu = -math.log(stretch[1]) / math.log(stretch[0]) if stretch[0] != 1.0 else math.nan
-    return Material(stretch[0], nu if stretch[0] != 1.0 else 0.0, f"{path.name} at {temperature:g} C")
+    return float(np.interp(temperature, degrees, along)), float(np.interp(temperature, degrees, across))
+
+
+def temperatures(path: Path) -> list[float]:
+    """The temperatures of a measured curve, in rising order [degC].
+
+    Raises
+    ------
+    InputError
+        The curve cannot be read.
+    """
+    return sorted({row[0] for row in _rows(path)})
 
 
 def _rows(path: Path) -> list[tuple[float, float, float]]:

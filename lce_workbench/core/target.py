@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -36,17 +37,38 @@ def resolve(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Fi
     return (turned(surface) if job.target.flip else surface), found
 
 
-def _shipped(job: Job, material: Material) -> tuple[Surface, tuple[Finding, ...]]:
-    name = job.target.surface
+def trial(job: Job, base: Path) -> Surface:
+    """The target, uncut, with few triangles: enough to know the sheet's scale, and whether it can be reached at all.
+
+    Raises
+    ------
+    InputError
+        As `resolve`.
+    """
+    if job.target.surface:
+        return _surface(job.target.surface)(COARSE)
+    return _even(load(base / job.target.mesh, cuts=job.target.cuts)[0])
+
+
+def _even(surface: Surface) -> Surface:
+    return even_mesh(surface, float(np.sqrt(4 / np.sqrt(3) * face_areas(surface).sum() / TRIAL)))
+
+
+def _surface(name: str) -> Callable[[float], Surface]:
     if name not in SURFACES:
         msg = f"target.surface {name!r} is unknown; shipped are {', '.join(SURFACES)}"
         raise InputError(msg)
-    coarse = SURFACES[name](COARSE)
+    return SURFACES[name]
+
+
+def _shipped(job: Job, material: Material) -> tuple[Surface, tuple[Finding, ...]]:
+    shape = _surface(job.target.surface)
+    coarse = shape(COARSE)
     cuts = _cuts(coarse, job, material)
     coarse = opened(coarse, cuts)
     edge = job.domains.size / (flat_edge(coarse, job, material) / mean_edge(coarse))
     _require_budget(coarse, edge)
-    fine = even_mesh(SURFACES[name](edge), edge) if job.target.remesh else SURFACES[name](edge)
+    fine = even_mesh(shape(edge), edge) if job.target.remesh else shape(edge)
     return opened(fine, cuts), ()
 
 
@@ -73,9 +95,9 @@ def _meshed(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Fi
 
 def _resampled(surface: Surface, job: Job, material: Material) -> Surface:
     """Even triangles of the domains' size, whatever the input's: a trial with about `TRIAL` of them gives the scale."""
-    trial = even_mesh(surface, float(np.sqrt(4 / np.sqrt(3) * face_areas(surface).sum() / TRIAL)))
-    cuts = _cuts(trial, job, material)
-    edge = job.domains.size * mean_edge(trial) / flat_edge(opened(trial, cuts), job, material)
+    coarse = _even(surface)
+    cuts = _cuts(coarse, job, material)
+    edge = job.domains.size * mean_edge(coarse) / flat_edge(opened(coarse, cuts), job, material)
     _require_budget(surface, edge)
     return opened(even_mesh(surface, edge), cuts)
 
