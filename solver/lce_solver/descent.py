@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.lapack import dtrtrs
 
 from lce_solver.types import Floats
 
@@ -36,14 +36,88 @@ class Method:
     """Multiplies the offered inverse where there is memory: more than 1 if it belongs to too stiff a model."""
 
 
+class Memory:
+    """The last steps of a descent and the changes of the gradient that they made, at most ``size`` pairs.
+
+    The inverse Hessian that they imply is applied in closed form: a few products of tall matrices and two triangular
+    systems of that size (Byrd, Nocedal and Schnabel, Math. Program. 63, 129 (1994)), not a loop over long vectors.
+    """
+
+    def __init__(self, size: int, n: int) -> None:
+        self._steps, self._changes = np.empty((size, 2 * n)), np.empty((size, 2 * n))
+        self._products = np.zeros((size, size))
+        """[i, j] step i times change j, in the order of storage."""
+        self._order: list[int] = []
+        """Places in storage from the oldest pair to the newest."""
+
+    def __len__(self) -> int:
+        return len(self._order)
+
+    def clear(self) -> None:
+        """Forget all."""
+        self._order.clear()
+
+    def add(self, step: Complexes, change: Complexes) -> None:
+        """Remember a pair in place of the oldest, if the function curves upwards along it."""
+        s, y = step.view(np.float64), change.view(np.float64)
+        if not len(self._steps) or _product(s, y) <= 0:
+            return
+        full = len(self._order) == len(self._steps)
+        place = self._order.pop(0) if full else len(self._order)
+        self._order.append(place)
+        self._steps[place], self._changes[place] = s, y
+        used = len(self._order)
+        self._products[place, :used] = _times(self._changes[:used], s)
+        self._products[:used, place] = _times(self._steps[:used], y)
+
+    def downhill(self, gradient: Complexes, inverse: Inverse, stride: float) -> Complexes:
+        """Minus the inverse Hessian times the gradient; without memory the plain ``-inverse(gradient)``."""
+        if not self._order:
+            return -inverse(gradient)
+        used = len(self._order)
+        steps, changes = self._steps[:used], self._changes[:used]
+        products = self._products[np.ix_(self._order, self._order)]
+        curvature, upper = np.diag(products), np.triu(products)
+        g = gradient.view(np.float64)
+        ahead = np.empty(used)
+        ahead[self._order] = dtrtrs(upper, _times(steps, g)[self._order])[0]
+        q = stride * inverse((g - _sum(ahead, changes)).view(np.complex128)).view(np.float64)
+        behind = curvature * ahead[self._order] - _times(changes, q)[self._order]
+        back = np.empty(used)
+        back[self._order] = dtrtrs(upper, behind, trans=1)[0]
+        direction: Complexes = -(q + _sum(back, steps)).view(np.complex128)
+        return direction
+
+
+def _product(x: Floats, y: Floats) -> float:
+    """Scalar product. Not by BLAS: its threads cost more than they save here, and would change the last digits."""
+    return float(np.einsum("i,i->", x, y))
+
+
+def _times(rows: Floats, x: Floats) -> Floats:
+    """(k,) scalar products of ``rows`` (k, n) with ``x``."""
+    return np.asarray(np.einsum("ki,i->k", rows, x))
+
+
+def _sum(factors: Floats, rows: Floats) -> Floats:
+    """(n,) sum of the ``rows`` (k, n), each times its factor."""
+    return np.asarray(np.einsum("k,ki->i", factors, rows))
+
+
 @dataclass(frozen=True, eq=False)
 class Minimum:
-    """Where the descent stopped."""
+    """Where a descent stopped; it can go on from here as if it had not stopped."""
 
     x: Complexes
     history: Floats
-    """(iterations + 1,) values."""
+    """(iterations + 1,) values; empty before the first."""
     converged: bool
+    memory: Memory | None = None
+
+
+def start(x: Complexes) -> Minimum:
+    """A descent that has not begun."""
+    return Minimum(x, np.empty(0), converged=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +133,7 @@ def unheard(iteration: int) -> None:
 
 def minimise(
     function: Function,
-    x: Complexes,
+    begin: Minimum,
     inverse: Inverse,
     *,
     method: Method,
@@ -67,30 +141,30 @@ def minimise(
     max_iterations: int,
     tick: Tick,
 ) -> Minimum:
-    """Descend from ``x`` until the relative decrease per iteration stays below ``tolerance``.
+    """Descend from ``begin`` until the relative decrease per iteration stays below ``tolerance``.
 
     Parameters
     ----------
     inverse : product with the inverse of a positive model of the Hessian.
+    max_iterations : of the whole descent, with those behind ``begin``.
     """
-    point = _Point(x, *function(x))
-    history = [point.value]
-    pairs: deque[tuple[Complexes, Complexes, float]] = deque(maxlen=method.memory)
+    point = _Point(begin.x, *function(begin.x))
+    history = begin.history.tolist() or [point.value]
+    memory = begin.memory or Memory(method.memory, len(point.x))
     while np.isfinite(point.value) and len(history) <= max_iterations:
         tick(len(history) - 1)
-        downhill = -_product(pairs, inverse, method.stride, point.gradient)
-        after = _search(function, point, downhill)
-        if after is None and pairs:
-            pairs.clear()  # the memory is stale: begin again from the plain step
+        after = _search(function, point, memory.downhill(point.gradient, inverse, method.stride))
+        if after is None and len(memory):
+            memory.clear()  # it is stale: begin again from the plain step
             continue
         if after is None:
             return Minimum(point.x, np.array(history), converged=True)  # no decrease that floats can show
-        _remember(pairs, after.x - point.x, after.gradient - point.gradient)
+        memory.add(after.x - point.x, after.gradient - point.gradient)
         point = after
         history.append(point.value)
         if _settled(history, tolerance):
-            return Minimum(point.x, np.array(history), converged=True)
-    return Minimum(point.x, np.array(history), converged=False)
+            return Minimum(point.x, np.array(history), converged=True, memory=memory)
+    return Minimum(point.x, np.array(history), converged=False, memory=memory)
 
 
 def _settled(history: list[float], tolerance: float) -> bool:
@@ -98,41 +172,9 @@ def _settled(history: list[float], tolerance: float) -> bool:
     return decrease <= WINDOW * tolerance * history[-1] + FLOOR
 
 
-def _dot(x: Complexes, y: Complexes) -> float:
-    """Scalar product of two planar vector fields.
-
-    Not by BLAS: its threads cost more than they save here, and their number would change the last digits.
-    """
-    return float(np.einsum("i,i->", x.view(np.float64), y.view(np.float64)))
-
-
-def _remember(pairs: deque[tuple[Complexes, Complexes, float]], step: Complexes, change: Complexes) -> None:
-    curvature = _dot(step, change)
-    if curvature > 0:
-        pairs.append((step, change, curvature))
-
-
-def _product(
-    pairs: deque[tuple[Complexes, Complexes, float]], inverse: Inverse, stride: float, gradient: Complexes
-) -> Complexes:
-    """Inverse Hessian times gradient (two-loop recursion; Nocedal and Wright, algorithm 7.4)."""
-    if not pairs:
-        return inverse(gradient)
-    q = gradient.copy()
-    shares = []
-    for step, change, curvature in reversed(pairs):
-        share = _dot(step, q) / curvature
-        q -= share * change
-        shares.append(share)
-    q = stride * inverse(q)
-    for (step, change, curvature), share in zip(pairs, reversed(shares), strict=True):
-        q += (share - _dot(change, q) / curvature) * step
-    return q
-
-
 def _search(function: Function, start: _Point, direction: Complexes) -> _Point | None:
     """Bisect for a step with the weak Wolfe conditions; ``None`` when nothing decreases."""
-    slope = _dot(start.gradient, direction)
+    slope = _slope(start, direction)
     low, high, length = 0.0, np.inf, 1.0
     best = None
     for _ in range(TRIALS if slope < 0 else 0):
@@ -140,9 +182,13 @@ def _search(function: Function, start: _Point, direction: Complexes) -> _Point |
         trial = _Point(x, *function(x))
         if not trial.value <= start.value + SUFFICIENT * length * slope:  # also when it is not a number
             high = length
-        elif _dot(trial.gradient, direction) < CURVED * slope:
+        elif _slope(trial, direction) < CURVED * slope:
             low, best = length, trial
         else:
             return trial
         length = (low + high) / 2 if np.isfinite(high) else 2 * low
     return best
+
+
+def _slope(point: _Point, direction: Complexes) -> float:
+    return _product(point.gradient.view(np.float64), direction.view(np.float64))

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from lce_solver import judge
-from lce_solver.descent import Method, Minimum, Tick, minimise, unheard
+from lce_solver.descent import Method, Minimum, Tick, minimise, start, unheard
 from lce_solver.mirror import twins
 from lce_solver.plane import axis_along_x, convex_map, long_side_along_x
 from lce_solver.topology import boundary_loops
@@ -79,14 +79,14 @@ def flatten(
     method : a name in `METHODS`; ``local_global`` is the paper's.
     tick : called before each iteration with its number; it may raise to stop.
     """
-    start = stretched(rigid.w, stretches, angle)
-    return refine(rigid.surface, rigid.operator, start, stretches, stop, method=method, twin=rigid.twins, tick=tick)
+    begin = stretched(rigid.w, stretches, angle)
+    return refine(rigid.surface, rigid.operator, begin, stretches, stop, method=method, twin=rigid.twins, tick=tick)
 
 
 def refine(
     surface: Surface,
     op: Operator,
-    start: Complexes,
+    begin: Complexes,
     stretches: Stretches,
     stop: Stop = DEFAULT,
     *,
@@ -94,13 +94,13 @@ def refine(
     twin: Ints | None = None,
     tick: Tick = unheard,
 ) -> Flattening:
-    """Minimise the energy from any flat coordinates ``start`` (n_v,), u + i v.
+    """Minimise the energy from any flat coordinates ``begin`` (n_v,), u + i v.
 
     Parameters
     ----------
     twin : (n_v,) each vertex's mirror image, to keep a symmetric start symmetric against rounding.
     """
-    found = _descend(op, start, stretches, method=method, stop=stop, twin=twin, tick=tick)
+    found = _descend(op, begin, stretches, method=method, stop=stop, twin=twin, tick=tick)
     uv = as_points(found.x)
     finite = bool(np.isfinite(found.history[-1]))
     flipped = judge.flipped(uv, surface.faces)
@@ -136,7 +136,7 @@ def _descend(
 
     return minimise(
         function,
-        w,
+        start(w) if isinstance(w, np.ndarray) else w,
         op.solve,
         method=METHODS[method],
         tolerance=stop.tolerance,

@@ -76,8 +76,8 @@ def _inverse(matrix: sparse.csr_array) -> Callable[[Complexes], Complexes]:
 
 def moduli(stretches: tuple[float, float]) -> tuple[float, float]:
     """``|a|`` and ``|b|`` of a map whose inverse stretches by ``stretches`` (along, across), in either order."""
-    inverse = 1 / np.asarray(stretches)
-    return float(inverse.mean()), float(np.ptp(inverse) / 2)
+    large, small = 1 / min(stretches), 1 / max(stretches)
+    return (large + small) / 2, (large - small) / 2
 
 
 def energy(op: Operator, w: Complexes, stretches: tuple[float, float]) -> tuple[float, Complexes]:
@@ -87,8 +87,10 @@ def energy(op: Operator, w: Complexes, stretches: tuple[float, float]) -> tuple[
     singular value decomposition is needed. The gradient is ``dE/du + i dE/dv``, (n_v,) complex.
     """
     ab = op.derivative @ w
-    size = np.abs(ab)
-    excess = size - np.repeat(moduli(stretches), len(size) // 2)
+    size = np.sqrt(ab.real**2 + ab.imag**2)
+    alpha, beta = moduli(stretches)
+    half = len(size) // 2
+    excess = np.concatenate([size[:half] - alpha, size[half:] - beta])
     force = op.weight * excess
     gradient = op.adjoint @ (2 * force / np.maximum(size, TINY) * ab)
     return float(np.einsum("i,i->", force, excess)), gradient
