@@ -1,132 +1,150 @@
-"""Which start wins: all compete on a coarse mesh, the best few are carried to finer ones and compete again there."""
+"""Which start wins: all compete while the director is kept smooth; the best go on to less smoothing and finer meshes.
+
+Smoothing removes most of the energy's minima, and a solution followed to little smoothing ends lower than one that was
+never smoothed. Who will be best shows early, so that most starts cost little.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
-from lce_solver import judge
-from lce_solver.geometry import face_areas
-from lce_solver.levels import carried, levels
-from lce_solver.metric import DEFAULT, Rigid, Stop, Stretches, as_complex, flatten, lay_flat, refine
-from lce_solver.mirror import twins
-from lce_solver.plane import axis_along_x
-from lce_solver.twist import bending_left, bending_tensor, pull_back
+from lce_solver.levels import levels
+from lce_solver.metric import DEFAULT, Stop, lay_flat
+from lce_solver.runner import Mesh, Runner, advanced, anew, finer_mesh, first_mesh, moved, starting
 from lce_solver.types import Flattening, Material, Progress, Start, Surface, silent
-from lce_solver.wirtinger import operator
 
+
+@dataclass(frozen=True)
+class Round:
+    """A part of the competition."""
+
+    smoothing: float
+    """Weight of the roughness, unless the job asks for more."""
+    keep: int
+    """Starts that go on. Symmetric ones do in any case: it takes them long to show what they are worth."""
+
+
+ROUNDS = (Round(3.0, 6), Round(0.3, 6), Round(0.03, 3))
+"""On the first mesh; the last one comes again on each finer mesh, where it smooths the folds left by the coarser."""
 FINALISTS = (3, 1)
 """Starts that go on to the second mesh, and to each further one."""
+SKETCH = 1e-3
+"""Tolerance of the rounds."""
 ROUGH = 1e-6
-"""Tolerance on coarse meshes at least: what is left is far below the differences between starts."""
-TYPICAL = 300
-"""Iterations of one start, for the progress bar only."""
+"""Tolerance until the winner is known: what is left is far below the differences between starts."""
 TIE = 1e-6
 """Scores as close as this are equal (symmetric targets); the smaller angle wins, so that the result is repeatable."""
 FAVOUR = 0.03
 """A symmetric solution wins over lopsided ones whose score is less than this better."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Runner:
-    """A start with its solution on the present mesh."""
-
-    start: Start
-    flat: Flattening
-
-
 def compete(
-    surface: Surface, material: Material, starts: int = 12, stop: Stop = DEFAULT, progress: Progress = silent
+    surface: Surface,
+    material: Material,
+    starts: int = 12,
+    stop: Stop = DEFAULT,
+    progress: Progress = silent,
+    *,
+    smoothing: float = 0.0,
 ) -> tuple[Flattening, tuple[Start, ...]]:
     """Minimise from stretches of the plane in ``starts`` directions and take the best.
 
     The energy has many minima. The best has the smallest rms error x share of bending that twist cannot reach, among
     those that are valid (no flipped triangle, simple outline); if none is, the one with the fewest faults is returned.
-    Large meshes are first solved on coarse ones (`levels`), where all but the best `FINALISTS` drop out.
+    Large meshes are first solved on coarse ones (`levels`).
+
+    Parameters
+    ----------
+    smoothing : weight of the director's `smoothness.roughness` in what is minimised.
 
     Returns
     -------
-    The best flattening, and one record per start in the order of the angles, each from the finest mesh it came to.
+    The best flattening, and one record per start in the order of the angles, each from where it dropped out.
     """
     meshes = levels(surface)
-    field = _first_round(meshes[0], material, starts, _stop(stop, last=len(meshes) == 1), _share(progress, meshes, 0))
-    records = {runner.start.angle: runner.start for runner in field}
-    for k in range(1, len(meshes)):
-        chosen = _ranked(field)[: FINALISTS[min(k, len(FINALISTS)) - 1]]
-        last = k + 1 == len(meshes)
-        field = _next_round(meshes[: k + 1], chosen, material, _stop(stop, last=last), _share(progress, meshes, k))
-        records |= {runner.start.angle: runner.start for runner in field}
+    reports = [_share(progress, meshes, k) for k in range(len(meshes))]
+    rigid = lay_flat(meshes[0])
+    mesh = first_mesh(rigid, material)
+    mirrored = rigid.twins is not None
+    field = [
+        starting(mesh, rigid, k * np.pi / starts, mirrored and 2 * k % starts == 0)
+        for k in range(starts)
+        if not mirrored or 2 * k <= starts
+    ]
+    field, records = _first_rounds(mesh, field, stop, smoothing, _within(reports[0], 0.0, 0.6))
+    for k, finer in enumerate(meshes[1:], 1):
+        coarse, mesh = mesh, finer_mesh(finer, material)
+        field = _ranked(field)[: FINALISTS[min(k, len(FINALISTS)) - 1]]
+        field = _next_mesh(coarse, mesh, field, stop, smoothing=smoothing, report=_within(reports[k], 0.0, 0.3))
+        records |= _records(field)
+    best, field = _finished(mesh, field, stop, smoothing, _within(reports[-1], 0.6, 1.0))
+    records |= _records(field)
     progress("flatten", 1.0)
-    return _ranked(field)[0].flat, tuple(records.values())
+    return mesh.flattening(best.found), _all_starts(records, starts, mirrored)
 
 
-def _first_round(surface: Surface, material: Material, starts: int, stop: Stop, report: Progress) -> list[_Runner]:
-    """All starts; of two that are mirror images of each other only the first is solved."""
-    rigid = lay_flat(surface)
-    judged = _judge(surface, material)
-    solved: dict[int, _Runner] = {}
-    for k in range(starts):
-        mirror = (starts - k) % starts
-        angle = k * np.pi / starts
-        if rigid.twins is not None and mirror in solved:
-            solved[k] = replace(solved[mirror], start=replace(solved[mirror].start, angle=angle))
-            continue
-        tick = partial(_tell, report, k / starts, 1 / starts)
-        symmetric = rigid.twins is not None and mirror == k
-        flat = flatten(_kept(rigid, symmetric), _stretches(material), angle, stop, tick=tick)
-        solved[k] = _Runner(judged(flat, angle, symmetric), flat)
-    return list(solved.values())
+Report = Callable[[float], None]
 
 
-def _kept(rigid: Rigid, symmetric: bool) -> Rigid:
-    return rigid if symmetric else replace(rigid, twins=None)
+def _first_rounds(
+    mesh: Mesh, field: list[Runner], stop: Stop, smoothing: float, report: Report
+) -> tuple[list[Runner], dict[float, Start]]:
+    """Those that are left after `ROUNDS`, and the records of all."""
+    records: dict[float, Start] = {}
+    for k, one in enumerate(ROUNDS):
+        part = _within(report, k / len(ROUNDS), (k + 1) / len(ROUNDS))
+        field = advanced(mesh, field, max(one.smoothing, smoothing), _loose(stop, SKETCH), part, last=False)
+        records |= _records(field)
+        order = _ranked(field)
+        field = [runner for place, runner in enumerate(order) if place < one.keep or runner.start.symmetric]
+    return field, records
 
 
-def _next_round(
-    meshes: list[Surface], field: list[_Runner], material: Material, stop: Stop, report: Progress
-) -> list[_Runner]:
-    """The solutions on the mesh before the last as starts on the last."""
-    coarse, fine = meshes[-2:]
-    op, twin, judged = operator(fine), twins(fine), _judge(fine, material)
+def _next_mesh(
+    coarse: Mesh, fine: Mesh, field: list[Runner], stop: Stop, *, smoothing: float, report: Report
+) -> list[Runner]:
+    """The field on the finer mesh, with the folds of the coarser one smoothed."""
     result = []
     for k, runner in enumerate(field):
-        tick = partial(_tell, report, k / len(field), 1 / len(field))
-        w, kept = as_complex(carried(coarse, fine, runner.flat.uv)), None
-        if runner.start.symmetric and twin is not None:
-            w, kept = axis_along_x(w, twin), twin
-        flat = refine(fine, op, w, _stretches(material), stop, twin=kept, tick=tick)
-        if _faults(runner.start) == 0 < len(flat.flipped) + len(flat.crossings):  # carried over a seam, say
-            kept, rigid = None, replace(lay_flat(fine), twins=None)
-            flat = flatten(rigid, _stretches(material), runner.start.angle, stop, tick=tick)
-        result.append(_Runner(judged(flat, runner.start.angle, kept is not None), flat))
+        part = _within(report, k / len(field), (k + 1) / len(field))
+        weight, loose = max(ROUNDS[-1].smoothing, smoothing), _loose(stop, SKETCH)
+        (carried,) = advanced(fine, [moved(coarse, fine, runner)], weight, loose, part, last=False)
+        if _faults(runner.start) == 0 < _faults(carried.start):
+            (carried,) = advanced(fine, [anew(fine, runner)], weight, loose, _unheard, last=False)
+        result.append(carried)
     return result
 
 
-def _judge(surface: Surface, material: Material) -> Callable[[Flattening, float, bool], Start]:
-    """The record of a flattening of ``surface``."""
-    area, bending = face_areas(surface), bending_tensor(surface)
-
-    def record(flat: Flattening, angle: float, symmetric: bool) -> Start:
-        errors = judge.stretch_errors(judge.stretches(surface, flat.uv, material), material)
-        form = pull_back(bending, judge.jacobians(surface, flat.uv))
-        return Start(
-            angle=angle,
-            status=flat.status,
-            rms=judge.rms(errors, area),
-            bending_left=bending_left(form, flat.theta, material, area),
-            flipped=len(flat.flipped),
-            crossings=len(flat.crossings),
-            symmetric=symmetric,
-            triangles=len(surface.faces),
-        )
-
-    return record
+def _finished(
+    mesh: Mesh, field: list[Runner], stop: Stop, smoothing: float, report: Report
+) -> tuple[Runner, list[Runner]]:
+    """The winner at the job's smoothing and tolerance, and the field; the others stay at `ROUGH`."""
+    field = advanced(mesh, field, smoothing, _loose(stop, ROUGH), _within(report, 0.0, 0.6), last=False)
+    while not (best := _ranked(field)[0]).finished:
+        (done,) = advanced(mesh, [best], smoothing, stop, _within(report, 0.6, 1.0), last=True)
+        field = [done if runner is best else runner for runner in field]
+    return best, field
 
 
-def _ranked(field: list[_Runner]) -> list[_Runner]:
+def _loose(stop: Stop, tolerance: float) -> Stop:
+    return replace(stop, tolerance=max(stop.tolerance, tolerance))
+
+
+def _records(field: list[Runner]) -> dict[float, Start]:
+    return {runner.start.angle: runner.start for runner in field}
+
+
+def _all_starts(records: dict[float, Start], starts: int, mirrored: bool) -> tuple[Start, ...]:
+    """One record per start; of a symmetric target's mirrored starts both have the record of the one that ran."""
+    angles = [k * np.pi / starts for k in range(starts)]
+    ran = [min(k, starts - k) if mirrored else k for k in range(starts)]
+    return tuple(replace(records[angles[j]], angle=angle) for angle, j in zip(angles, ran, strict=True))
+
+
+def _ranked(field: list[Runner]) -> list[Runner]:
     return [field[k] for k in ranking([runner.start for runner in field])]
 
 
@@ -147,20 +165,16 @@ def _favoured(start: Start) -> float:
     return start.score / (1 + FAVOUR) if start.symmetric else start.score
 
 
-def _stretches(material: Material) -> Stretches:
-    return material.along, material.across
-
-
-def _stop(stop: Stop, *, last: bool) -> Stop:
-    return stop if last else replace(stop, tolerance=max(stop.tolerance, ROUGH))
-
-
-def _share(progress: Progress, meshes: list[Surface], k: int) -> Progress:
-    """Progress within round ``k``; a round takes as long as its mesh is large."""
+def _share(progress: Progress, meshes: list[Surface], k: int) -> Report:
+    """Progress on mesh ``k``, which takes as long as it is large."""
     size = np.array([len(mesh.faces) for mesh in meshes], dtype=np.float64)
     begin, part = size[:k].sum() / size.sum(), size[k] / size.sum()
-    return lambda stage, done: progress(stage, float(begin + part * done))
+    return lambda done: progress("flatten", float(begin + part * done))
 
 
-def _tell(report: Progress, done: float, share: float, iteration: int) -> None:
-    report("flatten", done + share * iteration / (iteration + TYPICAL))
+def _within(report: Report, low: float, high: float) -> Report:
+    return lambda done: report(low + (high - low) * done)
+
+
+def _unheard(done: float) -> None:
+    """Of work that was not expected."""

@@ -19,7 +19,12 @@ def stretches(surface: Surface, uv: Floats, material: Material) -> Floats:
 
     The director is the principal direction whose stretch comes in the same order of size as ``material.along``.
     """
-    large_first = np.asarray(np.linalg.svd(jacobians(surface, uv), compute_uv=False), dtype=np.float64)
+    return principal(jacobians(surface, uv), material)
+
+
+def principal(jacobian: Floats, material: Material) -> Floats:
+    """(n_f, 2) singular values of ``jacobian`` (n_f, 3, 2), along and across the director."""
+    large_first = np.asarray(np.linalg.svd(jacobian, compute_uv=False), dtype=np.float64)
     return large_first if material.along > material.across else large_first[:, ::-1]
 
 

@@ -6,14 +6,15 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+from scipy import sparse
 
 from lce_solver import judge
-from lce_solver.descent import Method, Minimum, Tick, minimise, start, unheard
+from lce_solver.descent import Inverse, Method, Minimum, Tick, minimise, start, unheard
 from lce_solver.mirror import twins
 from lce_solver.plane import axis_along_x, convex_map, long_side_along_x
 from lce_solver.topology import boundary_loops
 from lce_solver.types import Flattening, Floats, Ints, Status, Surface
-from lce_solver.wirtinger import Complexes, Operator, director, energy, operator, stretched
+from lce_solver.wirtinger import Complexes, Operator, director, energy, inverse, operator, stretched
 
 Stretches = tuple[float, float]
 """Wanted stretches sheet -> target, along and across the director."""
@@ -42,6 +43,31 @@ DEFAULT = Stop()
 
 
 @dataclass(frozen=True, eq=False)
+class Objective:
+    """What a descent minimises on one mesh: the energy of the stretches and, if wanted, the director's roughness."""
+
+    operator: Operator
+    stretches: Stretches
+    inverse: Inverse
+    """Of a positive model of the Hessian."""
+    rough: sparse.csr_array | None = None
+    """(n_v, n_v) weight x `smoothness.roughness`."""
+
+    def __call__(self, x: Complexes) -> tuple[float, Complexes]:
+        """Value and gradient."""
+        value, gradient = energy(self.operator, x, self.stretches)
+        if self.rough is None:
+            return value, gradient
+        force = self.rough @ x
+        return value + np.einsum("i,i->", force.view(np.float64), x.view(np.float64)) / 2, gradient + force
+
+
+def objective(op: Operator, stretches: Stretches, rough: sparse.csr_array | None = None) -> Objective:
+    """The objective with its preconditioner, which models every triangle as stiff in all directions."""
+    return Objective(op, stretches, op.solve if rough is None else inverse(op.stiffness + rough), rough)
+
+
+@dataclass(frozen=True, eq=False)
 class Rigid:
     """What all starts share: the target laid flat as rigidly as it goes."""
 
@@ -56,7 +82,7 @@ class Rigid:
 def lay_flat(surface: Surface) -> Rigid:
     """Map the disk to a circle (always valid), then minimise the same energy with both stretches 1."""
     op = operator(surface)
-    w = _descend(op, as_complex(convex_map(surface)), ISOMETRIC, method="lbfgs", stop=Stop(ROUGH)).x
+    w = descend(objective(op, ISOMETRIC), start(as_complex(convex_map(surface))), Stop(ROUGH)).x
     twin = twins(surface)
     aligned = as_complex(long_side_along_x(as_points(w))) if twin is None else axis_along_x(w, twin)
     return Rigid(surface, op, aligned, twin)
@@ -100,7 +126,12 @@ def refine(
     ----------
     twin : (n_v,) each vertex's mirror image, to keep a symmetric start symmetric against rounding.
     """
-    found = _descend(op, begin, stretches, method=method, stop=stop, twin=twin, tick=tick)
+    found = descend(objective(op, stretches), start(begin), stop, method=method, twin=twin, tick=tick)
+    return flattening(surface, op, found, stretches)
+
+
+def flattening(surface: Surface, op: Operator, found: Minimum, stretches: Stretches) -> Flattening:
+    """What a descent found, with its director and its faults."""
     uv = as_points(found.x)
     finite = bool(np.isfinite(found.history[-1]))
     flipped = judge.flipped(uv, surface.faces)
@@ -120,24 +151,25 @@ local_global = partial(flatten, method="local_global")
 """The paper's method (Liu et al. 2008): same start, same energy, same answer, many more iterations."""
 
 
-def _descend(
-    op: Operator,
-    w: Complexes,
-    stretches: Stretches,
+def descend(
+    goal: Objective,
+    begin: Minimum,
+    stop: Stop = DEFAULT,
     *,
-    method: str,
-    stop: Stop,
+    method: str = "lbfgs",
     twin: Ints | None = None,
     tick: Tick = unheard,
 ) -> Minimum:
+    """Minimise from ``begin``, or go on with the descent that stopped there; ``twin`` as in `refine`."""
+
     def function(x: Complexes) -> tuple[float, Complexes]:
-        value, gradient = energy(op, x, stretches)
+        value, gradient = goal(x)
         return value, gradient if twin is None else (gradient + gradient[twin].conj()) / 2
 
     return minimise(
         function,
-        start(w) if isinstance(w, np.ndarray) else w,
-        op.solve,
+        begin,
+        goal.inverse,
         method=METHODS[method],
         tolerance=stop.tolerance,
         max_iterations=stop.max_iterations,

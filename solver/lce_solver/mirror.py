@@ -92,7 +92,9 @@ def _candidates(surface: Surface) -> list[Plane]:
 def _closest_on(surface: Surface) -> Callable[[Floats], Floats]:
     """Function from points (n, 3) to their closest points on the surface."""
     vertices, faces = np.array(surface.vertices, order="C"), np.array(surface.faces, order="C")
-    return lambda points: np.asarray(igl.point_mesh_squared_distance(np.array(points, order="C"), vertices, faces)[2])
+    tree = igl.AABB()
+    tree.init(vertices, faces)
+    return lambda points: np.asarray(tree.squared_distance(vertices, faces, np.array(points, order="C"))[2])
 
 
 def _fitted(points: Floats, partners: Floats, plane: Plane) -> Plane:

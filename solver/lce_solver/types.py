@@ -137,6 +137,7 @@ class Status(str, Enum):
     FLIPPED = "the flat sheet has flipped triangles"
     OVERLAP = "the outline of the flat sheet crosses itself"
     NOT_FINITE = "the energy is not a finite number"
+    OUTRUN = "stopped early: other starts were ahead"
     STALLED = "stopped: no step lowers the energy, although it is not yet at a minimum"
 
 
@@ -150,7 +151,7 @@ class Flattening:
     """(n_f,) director angle in the plane, modulo pi [rad]."""
     status: Status
     energy: Floats
-    """(k,) history of 1/2 sum w_t |sigma - s|^2, w_t the area fraction; the last is the result's."""
+    """(k,) history of the last descent: 1/2 sum w_t |sigma - s|^2, w_t the area fraction, + the smoothing's part."""
     iterations: int
     flipped: Ints
     """(k,) indices of triangles with negative area."""
@@ -185,6 +186,10 @@ class Start:
     """Whether the solution of a symmetric target was kept symmetric."""
     triangles: int = 0
     """Size of the finest mesh on which this start was solved; the figures are from there."""
+    energy: float = 0.0
+    """1/2 sum w_t |sigma - s|^2, w_t the area fraction, where this start ended."""
+    iterations: int = 0
+    """Of all its descents."""
 
     @property
     def score(self) -> float:

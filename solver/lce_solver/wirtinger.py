@@ -34,13 +34,15 @@ class Operator:
     """(n_v, 2 n_f) complex: its conjugate transpose."""
     weight: Floats
     """(2 n_f,) area fraction of each triangle, once for a and once for b."""
+    stiffness: sparse.csr_array
+    """(n_v, n_v) ``2 adjoint weight derivative``: twice the Laplacian."""
     solve: Callable[[Complexes], Complexes]
-    """Inverse of ``2 adjoint weight derivative`` (twice the Laplacian), with the first vertex held."""
+    """Inverse of the stiffness, with the first vertex held."""
 
 
 def operator(surface: Surface) -> Operator:
     """Assemble and factor; the triangles must have positive area."""
-    z, area = _laid_flat(surface)
+    z, area = laid_flat(surface)
     opposite = np.roll(z, -2, axis=1) - np.roll(z, -1, axis=1)
     hat = -0.25j * opposite.conj() / area[:, None]  # d/dz of the function that is 1 at one corner, 0 at the others
     n_f, n_v = len(z), len(surface.vertices)
@@ -49,10 +51,11 @@ def operator(surface: Surface) -> Operator:
     derivative = sparse.vstack([a, a.conj()], format="csr")
     adjoint = derivative.conj().T.tocsr()
     weight = np.tile(area / area.sum(), 2)
-    return Operator(derivative, adjoint, weight, _inverse(2 * (adjoint.multiply(weight).tocsr() @ derivative).real))
+    stiffness = (2 * (adjoint.multiply(weight).tocsr() @ derivative).real).tocsr()
+    return Operator(derivative, adjoint, weight, stiffness, inverse(stiffness))
 
 
-def _laid_flat(surface: Surface) -> tuple[Complexes, Floats]:
+def laid_flat(surface: Surface) -> tuple[Complexes, Floats]:
     """(n_f, 3) corners in each triangle's own plane, the first at 0 and the second on the x axis; (n_f,) areas."""
     origin, p, q = np.moveaxis(surface.vertices[surface.faces], 1, 0)
     p, q = p - origin, q - origin
@@ -61,7 +64,7 @@ def _laid_flat(surface: Surface) -> tuple[Complexes, Floats]:
     return np.stack([np.zeros_like(tip), base.astype(np.complex128), tip], axis=1), area
 
 
-def _inverse(matrix: sparse.csr_array) -> Callable[[Complexes], Complexes]:
+def inverse(matrix: sparse.csr_array) -> Callable[[Complexes], Complexes]:
     """Solve with a symmetric positive semi-definite matrix whose kernel are the constants (vertex 0 is held)."""
     options = {"SymmetricMode": True}
     lu = splu(matrix[1:, 1:].tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
