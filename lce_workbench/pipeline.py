@@ -170,6 +170,7 @@ def solved(run: Run) -> tuple[Design, Findings]:
         starts=job.solver.starts,
         tolerance=job.solver.tolerance,
         max_iterations=job.solver.max_iterations,
+        smoothing=job.solver.smoothing,
         progress=run.progress,
     )
     return result, (*said, *told, *result.findings)

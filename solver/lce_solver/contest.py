@@ -58,7 +58,7 @@ def compete(
 
     Parameters
     ----------
-    smoothing : weight of the director's `smoothness.roughness` in what is minimised.
+    smoothing : weight of the squared `smoothness.jumps` in what is minimised.
 
     Returns
     -------

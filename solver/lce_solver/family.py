@@ -15,11 +15,12 @@ import numpy as np
 
 from lce_solver import descent, judge
 from lce_solver.geometry import area_vectors, face_areas
-from lce_solver.metric import DEFAULT, METHODS, Stop, Stretches, as_complex, refine
+from lce_solver.metric import DEFAULT, METHODS, Objective, Stop, as_complex, objective, refine
 from lce_solver.mirror import twins
+from lce_solver.smoothness import jumps
 from lce_solver.twist import bending_left, bending_tensor, pull_back
 from lce_solver.types import Flattening, Floats, Ints, Material, Status, Surface
-from lce_solver.wirtinger import Complexes, Operator, energy, operator
+from lce_solver.wirtinger import Complexes, Operator, operator
 
 WEIGHTS = (1e-2, 1e-3, 1e-4)
 """Of the bending left over, against the metric's error, one after the other; the last is what the result has. Some
@@ -42,22 +43,26 @@ class Bent:
     """(n_f,) the same times exp(-4 i phi), phi the first principal direction in the triangle's own plane."""
 
 
-def steer(surface: Surface, flat: Flattening, material: Material, stop: Stop = DEFAULT) -> Flattening:
+def steer(
+    surface: Surface, flat: Flattening, material: Material, stop: Stop = DEFAULT, *, smoothing: float = 0.0
+) -> Flattening:
     """The best of ``flat`` and its neighbours in the family, by rms of the stretches x share of bending left.
 
-    A symmetric flattening stays symmetric. ``stop`` ends each descent (the first ones at `ROUGH` already).
+    A symmetric flattening stays symmetric. ``stop`` ends each descent (the first ones at `ROUGH` already); ``smoothing``
+    is the weight of the squared `smoothness.jumps`.
     """
     if flat.status is not Status.CONVERGED:
         return flat
     stretches = material.along, material.across
     op, bent = operator(surface), bent_of(surface)
+    goal = objective(op, stretches, jumps(surface), smoothing)
     twin = _mirrored(surface, as_complex(flat.uv))
     found = [flat]
     for first in range(len(WEIGHTS)):
         w = as_complex(flat.uv)
         for weight in WEIGHTS[first:]:
             until = stop if weight == WEIGHTS[-1] else replace(stop, tolerance=max(stop.tolerance, ROUGH))
-            w = _descend(op, w, stretches, bent, weight=weight, twin=twin, stop=until)
+            w = _descend(goal, w, bent, weight=weight, twin=twin, stop=until)
         there = refine(surface, op, w, stretches, Stop(1.0, 0))  # its measures, and not a step more
         if there.status is Status.ITERATION_LIMIT:  # no faults
             energy_ = np.append(flat.energy, there.energy)
@@ -109,19 +114,17 @@ def left(op: Operator, w: Complexes, bent: Bent) -> tuple[float, Complexes]:
     return float(np.sum(bent.weight + aligned.real)), gradient
 
 
-def _descend(
-    op: Operator, w: Complexes, stretches: Stretches, bent: Bent, *, weight: float, twin: Ints | None, stop: Stop
-) -> Complexes:
+def _descend(goal: Objective, w: Complexes, bent: Bent, *, weight: float, twin: Ints | None, stop: Stop) -> Complexes:
     def function(x: Complexes) -> tuple[float, Complexes]:
-        (metric, first), (bending, second) = energy(op, x, stretches), left(op, x, bent)
+        (metric, first), (bending, second) = goal(x), left(goal.operator, x, bent)
         gradient = first + weight * second
         return metric + weight * bending, gradient if twin is None else (gradient + gradient[twin].conj()) / 2
 
     method = METHODS["lbfgs"]
     return descent.minimise(
         function,
-        w,
-        op.solve,
+        descent.start(w),
+        goal.inverse,
         method=method,
         tolerance=stop.tolerance,
         max_iterations=stop.max_iterations,

@@ -14,7 +14,7 @@ from lce_solver.mirror import twins
 from lce_solver.plane import axis_along_x, convex_map, long_side_along_x
 from lce_solver.topology import boundary_loops
 from lce_solver.types import Flattening, Floats, Ints, Status, Surface
-from lce_solver.wirtinger import Complexes, Operator, director, energy, inverse, operator, stretched
+from lce_solver.wirtinger import Complexes, Operator, Term, director, energy, inverse, operator, stretched
 
 Stretches = tuple[float, float]
 """Wanted stretches sheet -> target, along and across the director."""
@@ -50,21 +50,36 @@ class Objective:
     stretches: Stretches
     inverse: Inverse
     """Of a positive model of the Hessian."""
-    rough: sparse.csr_array | None = None
-    """(n_v, n_v) weight x `smoothness.roughness`."""
+    more: Term | None = None
+    """As in `wirtinger.energy`."""
 
     def __call__(self, x: Complexes) -> tuple[float, Complexes]:
         """Value and gradient."""
-        value, gradient = energy(self.operator, x, self.stretches)
-        if self.rough is None:
-            return value, gradient
-        force = self.rough @ x
-        return value + np.einsum("i,i->", force.view(np.float64), x.view(np.float64)) / 2, gradient + force
+        return energy(self.operator, x, self.stretches, self.more)
 
 
-def objective(op: Operator, stretches: Stretches, rough: sparse.csr_array | None = None) -> Objective:
-    """The objective with its preconditioner, which models every triangle as stiff in all directions."""
-    return Objective(op, stretches, op.solve if rough is None else inverse(op.stiffness + rough), rough)
+def objective(
+    op: Operator, stretches: Stretches, jumps: sparse.csr_array | None = None, smoothing: float = 0.0
+) -> Objective:
+    """The objective with its preconditioner, which models every triangle as stiff in all directions.
+
+    Parameters
+    ----------
+    jumps : as `smoothness.jumps`.
+    smoothing : weight of their sum of squares.
+    """
+    if jumps is None or smoothing == 0:
+        return Objective(op, stretches, op.solve)
+    scaled = np.sqrt(2 * smoothing) * jumps
+    back = scaled.conj().T.tocsr()
+    stiffness = op.stiffness + (op.adjoint @ (back @ scaled) @ op.derivative).real
+
+    def roughness(ab: Complexes) -> tuple[float, Complexes]:
+        jump = scaled @ ab
+        parts = jump.view(np.float64)
+        return float(np.einsum("i,i->", parts, parts)) / 2, back @ jump
+
+    return Objective(op, stretches, inverse(stiffness), roughness)
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,7 +27,7 @@ from lce_solver.metric import (
 )
 from lce_solver.mirror import twins
 from lce_solver.plane import axis_along_x
-from lce_solver.smoothness import roughness
+from lce_solver.smoothness import jumps
 from lce_solver.twist import bending_left, bending_tensor, pull_back
 from lce_solver.types import Flattening, Floats, Ints, Material, Start, Status, Surface
 from lce_solver.wirtinger import Operator, energy, operator, stretched
@@ -43,8 +43,8 @@ class Mesh:
     surface: Surface
     material: Material
     operator: Operator
-    rough: sparse.csr_array
-    """(n_v, n_v) `smoothness.roughness`."""
+    jumps: sparse.csr_array
+    """As `smoothness.jumps`."""
     bending: Floats
     """As `twist.bending_tensor`."""
     twins: Ints | None
@@ -56,8 +56,8 @@ class Mesh:
         return self.material.along, self.material.across
 
     def objective(self, smoothing: float) -> Objective:
-        """What is minimised with this weight of the roughness."""
-        return objective(self.operator, self.stretches, 2 * smoothing * self.rough if smoothing else None)
+        """What is minimised with this weight of the jumps."""
+        return objective(self.operator, self.stretches, self.jumps, smoothing)
 
     def flattening(self, found: Minimum) -> Flattening:
         """The sheet that a descent found."""
@@ -75,7 +75,7 @@ def finer_mesh(surface: Surface, material: Material) -> Mesh:
 
 
 def _mesh(surface: Surface, material: Material, op: Operator, twin: Ints | None) -> Mesh:
-    return Mesh(surface, material, op, roughness(surface, op), bending_tensor(surface), twin)
+    return Mesh(surface, material, op, jumps(surface), bending_tensor(surface), twin)
 
 
 @dataclass(frozen=True, eq=False)

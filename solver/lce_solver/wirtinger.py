@@ -20,6 +20,8 @@ from lce_solver.types import Floats, Surface, line_angle
 
 Complexes = NDArray[np.complex128]
 
+Term = Callable[[Complexes], tuple[float, Complexes]]
+
 TINY = 1e-150
 """Stands for zero where a direction is divided by its length."""
 
@@ -83,11 +85,17 @@ def moduli(stretches: tuple[float, float]) -> tuple[float, float]:
     return (large + small) / 2, (large - small) / 2
 
 
-def energy(op: Operator, w: Complexes, stretches: tuple[float, float]) -> tuple[float, Complexes]:
+def energy(
+    op: Operator, w: Complexes, stretches: tuple[float, float], more: Term | None = None
+) -> tuple[float, Complexes]:
     """``1/2 sum weight [(sigma_1 - s_1)^2 + (sigma_2 - s_2)^2]`` (the paper, eq. S3) and its gradient.
 
     ``s`` are the inverse stretches. In a and b the bracket is ``2 [(|a| - alpha)^2 + (|b| - beta)^2]``, so no
     singular value decomposition is needed. The gradient is ``dE/du + i dE/dv``, (n_v,) complex.
+
+    Parameters
+    ----------
+    more : a further term, from (2 n_f,) ``(a, b)`` to its value and its derivative by them.
     """
     ab = op.derivative @ w
     size = np.sqrt(ab.real**2 + ab.imag**2)
@@ -95,8 +103,11 @@ def energy(op: Operator, w: Complexes, stretches: tuple[float, float]) -> tuple[
     half = len(size) // 2
     excess = np.concatenate([size[:half] - alpha, size[half:] - beta])
     force = op.weight * excess
-    gradient = op.adjoint @ (2 * force / np.maximum(size, TINY) * ab)
-    return float(np.einsum("i,i->", force, excess)), gradient
+    value, slope = float(np.einsum("i,i->", force, excess)), 2 * force / np.maximum(size, TINY) * ab
+    if more is not None:
+        further, steeper = more(ab)
+        value, slope = value + further, slope + steeper
+    return value, op.adjoint @ slope
 
 
 def stretched(w: Complexes, stretches: tuple[float, float], angle: float) -> Complexes:
