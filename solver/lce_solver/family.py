@@ -48,8 +48,8 @@ def steer(
 ) -> Flattening:
     """The best of ``flat`` and its neighbours in the family, by rms of the stretches x share of bending left.
 
-    A symmetric flattening stays symmetric. ``stop`` ends each descent (the first ones at `ROUGH` already); ``smoothing``
-    is the weight of the squared `smoothness.jumps`.
+    A symmetric flattening stays symmetric. ``stop`` ends each descent (the first ones at `ROUGH` already).
+    ``smoothing`` is the weight of the squared `smoothness.jumps`.
     """
     if flat.status is not Status.CONVERGED:
         return flat
