@@ -10,11 +10,13 @@ least as far as the rim of the region, on both sides.
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 
 import igl
 import numpy as np
 
+from lce_solver.errors import SolverError
 from lce_solver.geometry import face_areas
 from lce_solver.topology import boundary_loops
 from lce_solver.twist import bending_tensor
@@ -24,6 +26,8 @@ LEVELS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.98)
 """Curvatures, as shares of the largest, for which the region beyond is measured."""
 TOP = 0.99
 """The largest curvature is this quantile, so that a few odd vertices do not set it."""
+SIZES = (1.0, 0.9, 1.1, 0.8, 1.2, 0.7, 1.3, 0.6, 1.4)
+"""Tried in turn when distances are prepared."""
 EVEN = 4
 """Rounds of averaging that take the noise of the mesh out of its curvature."""
 
@@ -92,18 +96,32 @@ def length_bound(surface: Surface, material: Material) -> LengthBound | None:
 
 def _distances(surface: Surface) -> Callable[[Ints], Floats]:
     """Function from vertices to the (n_v,) geodesic distances from them; infinite from none."""
-    data = igl.HeatGeodesicsData()
     vertices, faces = np.array(surface.vertices, order="C"), np.array(surface.faces, order="C")
-    igl.heat_geodesics_precompute(vertices, faces, data)
+    data, size = _factored(vertices, faces)
 
     def distance(sources: Ints) -> Floats:
         if len(sources) == 0:
             return np.full(len(vertices), np.inf)
-        found = np.asarray(igl.heat_geodesics_solve(data, np.array(sources)))
+        found = np.asarray(igl.heat_geodesics_solve(data, np.array(sources))) / size
         reach: Floats = found - found[sources].mean()
         return reach
 
     return distance
+
+
+def _factored(vertices: Floats, faces: Ints) -> tuple[igl.HeatGeodesicsData, float]:
+    """The heat method's matrices of the mesh, and the size that it was given for them.
+
+    libigl factors a singular matrix whose last pivot is rounding, and gives up when that is not positive: about one
+    mesh in five. At another size it rounds otherwise.
+    """
+    for size in SIZES:
+        data = igl.HeatGeodesicsData()
+        with suppress(RuntimeError):
+            igl.heat_geodesics_precompute(size * vertices, faces, data)
+            return data, size
+    msg = "distances on the target cannot be computed; repair its smallest triangles or let target.remesh be true"
+    raise SolverError(msg)
 
 
 def feasible_lambda(bound: LengthBound, material: Material) -> float | None:
