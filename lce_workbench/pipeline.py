@@ -28,7 +28,7 @@ from lce_workbench.cad.step import EXTRAS, told
 from lce_workbench.cluster import client, each
 from lce_workbench.core import align, jobfile, material, target
 from lce_workbench.core.cell import Cell, choose, select, wanted
-from lce_workbench.core.channels import ChannelField, Channels
+from lce_workbench.core.channels import ChannelField, Channels, joined
 from lce_workbench.core.closed import closed
 from lce_workbench.core.domains import PLATES, Plate
 from lce_workbench.core.fields import left_out
@@ -286,6 +286,8 @@ def run_cad(run: Run) -> Findings:
     run.progress("cad: " + "; ".join(finding.message for finding in expected), 0.0)
     write_cad(cell, solids, job, folder, lambda stage, done: run.progress(stage, 0.7 * done))
     write_outlines(cell, plan, run)
+    if job.output.relief:
+        write_reliefs(cell, fields, run)
     run.progress("cad: checks", 0.7)
     found = measure(cell, solids, arrange(plan.uv, job), job, folder)
     if job.output.freecad:
@@ -322,6 +324,23 @@ def write_outlines(cell: Cell, plan: Design, run: Run) -> None:
         heated = np.load(prediction)["vertices"]
         with told(path):
             write_stl(*thickened(heated, plan.surface.faces, plan.thickness * plan.material.across), path)
+
+
+def write_reliefs(cell: Cell, fields: Mapping[Plate, ChannelField], run: Run) -> None:
+    """Write the rounded surface of both plates in a window: height map, its scale, mesh."""
+    from lce_workbench.cad.meshes import surface, write_stl
+    from lce_workbench.core.relief import near, relief, window_of
+    from lce_workbench.export.relief import write_relief
+
+    output = run.job.output
+    window = window_of(output, cell.domains.centroid[cell.chosen[0]])
+    for plate, field in fields.items():
+        path = run.folder / "cad" / f"relief_{plate}.png"
+        parts = [near(part, window, output.relief_spot_um * UM / 4) for part in field]
+        made = relief(joined(parts), window, output)
+        with told(path):
+            write_relief(made, output, path)
+            write_stl(*surface(made), path.with_suffix(".stl"))
 
 
 def run_freecad(command: str, folder: Path, made: Path) -> None:

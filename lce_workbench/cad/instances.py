@@ -19,7 +19,7 @@ from lce_solver.types import Finding, Floats, Ints, Severity
 from lce_workbench.cad.brep import write_solids
 from lce_workbench.cad.part21 import PRODUCT, Part21, Product, part21, real
 from lce_workbench.core.cell import LOOKS, domain_name
-from lce_workbench.core.channels import BLOCK, STEPS_PER_MM, Channels, slanted
+from lce_workbench.core.channels import BLOCK, STEPS_PER_MM, Channels, joined, slanted
 from lce_workbench.core.domains import SIDE
 from lce_workbench.core.job import Job
 from lce_workbench.core.polyhedron import polyhedron
@@ -126,19 +126,12 @@ def _regrouped(parts: Iterable[Channels]) -> Iterator[Channels]:
         group = part.domain // BLOCK
         for number in np.unique(group).tolist():
             if held and held[0].domain[0] // BLOCK != number:
-                yield _joined(held)
+                yield joined(held)
                 held = []
             rows = group == number
             held.append(replace(part, **{name: getattr(part, name)[rows] for name in ("centre", "length", "domain")}))
     if held:
-        yield _joined(held)
-
-
-def _joined(parts: Sequence[Channels]) -> Channels:
-    return replace(
-        parts[0],
-        **{name: np.concatenate([getattr(part, name) for part in parts]) for name in ("centre", "length", "domain")},
-    )
+        yield joined(held)
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import zipfile
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,12 +13,16 @@ from lce_solver.topology import boundary_loops
 from lce_solver.types import Floats, Ints
 from lce_workbench.core.polyhedron import polyhedron
 from lce_workbench.core.prism import Prism
+from lce_workbench.core.relief import Relief
 
 FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("spare", "<u2")])
 """A triangle of a binary STL."""
 
 TURN = 0.7357
 """Of a face while it is triangulated [rad]."""
+
+FINE = 100_000
+"""Triangles of the mesh of a relief, about 5 MB."""
 
 EPOCH = (1980, 1, 1, 0, 0, 0)
 """The date of everything: the first one that a zip file can hold."""
@@ -111,6 +116,16 @@ def thickened(vertices: Floats, faces: Ints, thickness: float) -> tuple[Floats, 
         a, b = loop, np.roll(loop, -1)
         walls += [np.stack([a + n, b + n, b], axis=1), np.stack([a + n, b, a], axis=1)]
     return np.concatenate([vertices + normals, vertices - normals]), np.concatenate([faces, faces[:, ::-1] + n, *walls])
+
+
+def surface(relief: Relief) -> tuple[Floats, Ints]:
+    """Points (n, 3) [mm] and triangles (m, 3) of a relief, each so many pixels apart that they are at most `FINE`."""
+    step = max(1, math.ceil(math.sqrt(2 * relief.height.size / FINE)))
+    x, y, z = relief.x[::step], relief.y[::step], relief.height[::step, ::step]
+    points = np.column_stack([np.tile(x, len(y)), np.repeat(y, len(x)), z.ravel()])
+    corner = (np.arange(len(y) - 1)[:, None] * len(x) + np.arange(len(x) - 1)).ravel()
+    a, b, c, d = corner, corner + 1, corner + len(x) + 1, corner + len(x)
+    return points, np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
 
 
 def write_stl(points: Floats, triangles: Ints, path: Path) -> None:

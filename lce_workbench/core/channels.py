@@ -15,8 +15,8 @@ for any convex domain, without clipping.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -146,6 +146,14 @@ def corners(channels: Channels, rows: slice = slice(None)) -> Floats:
     """Corners (n, 4, 2) of the channels in ``rows``, counter-clockwise [mm]; the first edge runs along the channel."""
     angle = channels.angle[channels.domain[rows]]
     return rectangles(channels.centre[rows], channels.length[rows], angle, channels.width)
+
+
+def joined(parts: Sequence[Channels]) -> Channels:
+    """Channels of one plate that came in parts."""
+    centre, length, domain = (
+        np.concatenate([getattr(part, name) for part in parts]) for name in ("centre", "length", "domain")
+    )
+    return replace(parts[0], centre=centre, length=length, domain=domain)
 
 
 def slanted(channels: Channels, outlines: Floats, guard: float) -> Floats:

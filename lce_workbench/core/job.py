@@ -290,6 +290,16 @@ class Output:
         "programs that lose mapped items",
         choices=("mapped", "assembly"),
     )
+    relief: bool = param(
+        False, "height map and mesh of a window (step_window_um, or 30 um) as the laser writes it: cad/relief_*"
+    )
+    relief_spot_um: float = param(
+        0.8, "1/e2 diameter of the writing spot in the relief", unit="um", above=0.0, high=100.0
+    )
+    relief_contrast: float = param(
+        1.0, "contrast of the resist in the relief: 1 linear, large: a threshold", low=0.1, high=100.0
+    )
+    relief_pixel_nm: float = param(50.0, "pixel of the relief", unit="nm", low=1.0, high=10000.0)
     step_gzip: bool = param(False, "compress cad/channels_*.step to .step.gz")
 
 
