@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from lce_solver.bounded import retwisted
-from lce_solver.design import measured
+from lce_solver.design import renewed
 from lce_solver.errors import InputError
+from lce_solver.judge import directors
 from lce_solver.twist import second_form
 from lce_solver.types import Design, Finding
 from lce_workbench.core import jobfile
 from lce_workbench.core.job import Job
 from lce_workbench.outputs import as_finding, read_design, read_manifest, require_unchanged
 
-ANEW = ("domain", "gap", "partition", "channel_phase")
+ANEW = ("domain", "gap", "partition", "channel_phase", "equilibrium")
 """How the checks begin whose findings the design stage makes anew from the job and the domains."""
 
 
@@ -39,11 +41,12 @@ def retwist(job: Job, inputs: Sequence[Mapping[str, Any]], former: Path) -> tupl
         msg = f"a mesh or curve of the job is not the one that {former} was made from; design without --metric"
         raise InputError(msg)
     form = second_form(plan.surface, plan.uv)
+    if jobfile.load(former / "job.toml").prediction.correct != "off":  # which turned the director for its own film
+        plan = replace(plan, theta=directors(plan.surface, plan.uv, plan.material))
     plan = retwisted(plan, form, **job.sheet.twist)
-    fresh = {finding.check: finding for finding in measured(plan, form, job.sheet.twist_limit)}
-    del fresh["solver"]  # it tells of all starts, and only the winner was kept
     kept = [as_finding(record) for record in manifest["findings"] if record["stage"] == "design"]
-    return plan, tuple(fresh.get(finding.check, finding) for finding in kept if not finding.check.startswith(ANEW))
+    kept = [finding for finding in kept if not finding.check.startswith(ANEW)]
+    return plan, renewed(tuple(kept), plan, job.sheet.twist_limit)
 
 
 def _require_same_metric(former: Job, job: Job, folder: Path) -> None:

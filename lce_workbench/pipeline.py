@@ -17,9 +17,10 @@ from typing import Any
 
 import numpy as np
 
+from lce_solver.arrive import arrive
 from lce_solver.compare import REACH, Comparison, Verdict, compare
 from lce_solver.cut import seams
-from lce_solver.design import design
+from lce_solver.design import design, renewed
 from lce_solver.errors import EnvironmentFault, InputError, LceError, SolverError
 from lce_solver.shell import film_of, predict, settle
 from lce_solver.types import Design, Finding, Progress, Severity, silent
@@ -146,6 +147,9 @@ def run_design(run: Run) -> Findings:
     """Solve the inverse problem: `job.toml`, `design.npz`, `domains.csv`."""
     job = run.job
     result, said = solved(run) if run.metric is None else retwist(job, inputs(job, run.base), run.metric)
+    if job.prediction.correct != "off":
+        result, told = arrive(result, job.prediction.correct, job.sheet.twist_limit, run.progress)
+        said = (*renewed(said, result, job.sheet.twist_limit), told)
     arrange(result.uv, job)  # a plate that is too small is told before anything is drawn
     (run.folder / "job.toml").write_text(jobfile.dump(rebased(job, run.base, run.folder)), encoding="utf-8")
     domains, divided = divide(result, job)

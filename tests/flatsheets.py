@@ -108,3 +108,23 @@ def quadratic_fit(flat, vertices, within):
 def apart(points, others):
     """Largest distance after the best rotation."""
     return align(points, others, np.ones(len(points))).distance.max()
+
+
+def random_state(rings=5, seed=1):
+    """A sheet with random pattern, far from equilibrium."""
+    rng = np.random.default_rng(seed)
+    uv, faces = disk(rings)
+    flat = film(
+        uv,
+        faces,
+        rng.uniform(0, 3, len(faces)),
+        rng.normal(size=len(faces)),
+        material=Material(1.3, 0.4),
+        thickness=0.1,
+    )
+    x = np.column_stack([uv, 0.3 * uv[:, 0] ** 2 + 0.2 * uv[:, 1]]) + 0.03 * rng.normal(size=(len(uv), 3))
+    return flat, x, rng.normal(size=x.shape)
+
+
+def hot(flat):
+    return flat.at(flat.material.lambda_)

@@ -252,6 +252,11 @@ class SolverSpec:
 class PredictionSpec:
     """The simulated heating of the flat sheet."""
 
+    correct: str = param(
+        "full",
+        "let the simulation correct the design: director and twist (full), the twist alone (dtheta), nothing (off)",
+        choices=("full", "dtheta", "off"),
+    )
     seed: int = param(1, "seed of the imperfection that the sheet starts with", low=0, high=2**31 - 1)
     imperfection: float = param(0.02, "deviation of that imperfection, in thicknesses", low=0.0, high=1.0)
     steps: int = param(10, "steps of the heating", low=1, high=1000)

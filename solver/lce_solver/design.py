@@ -107,6 +107,13 @@ def measured(result: Design, form: Floats, twist_limit: float) -> tuple[Finding,
     return (bounded(result.surface, result.material), *assess(result), cost(form, result, twist_limit))
 
 
+def renewed(findings: tuple[Finding, ...], plan: Design, twist_limit: float) -> tuple[Finding, ...]:
+    """The findings of a design whose director or twist was changed; what its solver said stays."""
+    fresh = {one.check: one for one in measured(plan, second_form(plan.surface, plan.uv), twist_limit)}
+    del fresh["solver"]  # it tells of all starts
+    return tuple(fresh.get(one.check, one) for one in findings)
+
+
 def sheet_angle(uv: Floats, surface: Surface) -> float:
     """Turn of the sheet that makes its smallest rectangle axis-parallel and the target's x and y come out best [rad].
 

@@ -153,14 +153,91 @@ def stiffness(sheet: Shell, aim: Reference, x: Floats) -> Floats:
     """
     forms = _forms(sheet, x)
     _, stress, _ = _stresses(aim, forms)
-    outward = forms.normal[:, :, None] * forms.normal[:, None, :]
+    element = _gauss_newton(sheet, aim, forms)
+    tension = sheet.slopes @ _tensile(stress) @ sheet.slopes.swapaxes(1, 2)
+    element[:, :3, :3] += tension[..., None, None] * np.eye(3)
+    return element
+
+
+def _outward(forms: _Forms) -> Floats:
+    """(n_f, 1, 1, 3, 3) n n^T."""
+    normal = forms.normal[:, None, None]
+    product: Floats = normal[..., :, None] * normal[..., None, :]
+    return product
+
+
+def _gauss_newton(sheet: Shell, aim: Reference, forms: _Forms) -> Floats:
+    """Both terms' derivatives squared, (n_f, 6, 6, 3, 3)."""
     bent = aim.whitening @ _curvature_slopes(sheet, forms).swapaxes(1, 2) * (aim.thickness / np.sqrt(3))
-    element: Floats = (bent.swapaxes(1, 2) @ bent)[..., None, None] * outward[:, None, None]
+    element: Floats = (bent.swapaxes(1, 2) @ bent)[..., None, None] * _outward(forms)
     stretched = np.einsum("tij,tjkx->tikx", aim.whitening, _metric_slopes(sheet, forms)).reshape(-1, 3, 9)
     inner = (stretched.swapaxes(1, 2) @ stretched).reshape(-1, 3, 3, 3, 3).swapaxes(2, 3)
-    tension = sheet.slopes @ _tensile(stress) @ sheet.slopes.swapaxes(1, 2)
-    element[:, :3, :3] += inner + tension[..., None, None] * np.eye(3)
+    element[:, :3, :3] += inner
     return element
+
+
+def hessian(sheet: Shell, aim: Reference, x: Floats) -> Floats:
+    """Second derivatives of each triangle's energy, (n_f, 6, 6, 3, 3) over pairs of patch nodes; may be indefinite.
+
+    Gauss-Newton of both terms, all of the membrane stress, and of the moments m the second variation of b,
+    ``-2 (n . dx_k) (x^k . (dx_ij - Gamma^l_ij dx_l)) - b_ij a^kl (n . dx_k) (n . dx_l)``.
+    """
+    forms = _forms(sheet, x)
+    _, stress, moment = _stresses(aim, forms)
+    element = _gauss_newton(sheet, aim, forms)
+    s11, s22, s12 = stress.T
+    tension = sheet.slopes @ np.moveaxis(np.array([[2 * s11, s12], [s12, 2 * s22]]), 2, 0)
+    element[:, :3, :3] += (tension @ sheet.slopes.swapaxes(1, 2))[..., None, None] * np.eye(3)
+    a11, a22, a12 = forms.first.T
+    inverse = np.moveaxis(np.array([[a22, -a12], [-a12, a11]]) / (a11 * a22 - a12**2), 2, 0)
+    slopes = np.concatenate([sheet.slopes, np.zeros_like(sheet.slopes)], axis=1)
+    dual = slopes @ inverse @ forms.tangent.swapaxes(0, 1)  # (n_f, 6, 3): of each node's motion along the normal
+    pulled = np.einsum("tjg,tg->tj", _curvature_slopes(sheet, forms), moment)
+    tilt = np.einsum("ta,tib,tj->tijab", forms.normal, dual, pulled)
+    element -= tilt + tilt.transpose(0, 2, 1, 4, 3)
+    turned = _dot(moment, forms.second)[:, None, None] * (slopes @ inverse @ slopes.swapaxes(1, 2))
+    element -= turned[..., None, None] * _outward(forms)
+    return element
+
+
+TURN = np.array([[0.0, 0.0, 2.0], [0.0, 0.0, -2.0], [-1.0, 1.0, 0.0]])
+"""Derivative of the components of R^T t R with respect to the angle of R."""
+
+
+def pattern_forces(sheet: Shell, aim: Reference, unit: Reference, x: Floats) -> Floats:
+    """Derivatives of each triangle's gradient with respect to director and twist, (n_f, 6, 3, 2) over patch nodes.
+
+    ``unit`` is what the sheet wants to be where its twist is 1. To turn the director is to turn the sheet back.
+    """
+    forms = _forms(sheet, x)
+    _, stress, moment = _stresses(aim, forms)
+    stiff = aim.whitening.swapaxes(1, 2) @ aim.whitening
+    bend = aim.thickness**2 / 3
+    turned = stress @ TURN + np.einsum("tij,tj->ti", stiff, forms.first @ TURN.T)
+    bent = moment @ TURN + bend * np.einsum("tij,tj->ti", stiff, forms.second @ TURN.T)
+    twisted = -bend * np.einsum("tij,tj->ti", stiff, unit.curvature)
+    along_normal = np.einsum("tjg,tgp->tjp", _curvature_slopes(sheet, forms), np.stack([bent, twisted], axis=2))
+    forces: Floats = along_normal[:, :, None, :] * forms.normal[:, None, :, None]
+    forces[:, :3, :, 0] += np.einsum("tgjx,tg->tjx", _metric_slopes(sheet, forms), turned)
+    return forces
+
+
+def bias(sheet: Shell, plain: Reference, twisted: Reference, x: Floats) -> float:
+    """Energy by which the twist favours the shape over its mirror image, in bending energies of the plain sheet.
+
+    ``plain`` is what the sheet without twist wants to be. Positive: the shape costs less than its mirror image.
+    """
+    form = _forms(sheet, x).second
+    white = np.einsum("tij,tj->ti", plain.whitening, form)
+    wanted = np.einsum("tij,tj->ti", plain.whitening, twisted.curvature)
+    return float(4 * np.vdot(white, wanted) / np.vdot(white, white))
+
+
+def bent_form(sheet: Shell, x: Floats) -> Floats:
+    """(n_f, 2, 2) second form of the shape in sheet coordinates [1/mm]."""
+    b11, b22, b12 = _forms(sheet, x).second.T
+    form: Floats = np.stack([b11, b12, b12, b22], axis=1).reshape(-1, 2, 2)
+    return form
 
 
 def _curvature_slopes(sheet: Shell, forms: _Forms) -> Floats:

@@ -12,7 +12,9 @@ from flatsheets import (
     disk,
     fitted_cone_angle,
     fitted_radius,
+    hot,
     quadratic_fit,
+    random_state,
     rectangle,
     uniform,
 )
@@ -27,19 +29,6 @@ from lce_solver.types import Material, Status
 
 LCE = Material(0.6, 0.5)
 COOLED = Material(1.3, 0.4)
-
-
-def random_state(rings=5, seed=1):
-    """A sheet with random pattern, far from equilibrium."""
-    rng = np.random.default_rng(seed)
-    uv, faces = disk(rings)
-    flat = film(uv, faces, rng.uniform(0, 3, len(faces)), rng.normal(size=len(faces)), material=COOLED, thickness=0.1)
-    x = np.column_stack([uv, 0.3 * uv[:, 0] ** 2 + 0.2 * uv[:, 1]]) + 0.03 * rng.normal(size=(len(uv), 3))
-    return flat, x, rng.normal(size=x.shape)
-
-
-def hot(flat):
-    return flat.at(flat.material.lambda_)
 
 
 # --- operators ---------------------------------------------------------------------------------------------------

@@ -1,0 +1,318 @@
+"""A design that arrives: director and twist corrected until the heated sheet, not only its metric, is the target.
+
+The equilibrium x of a pattern p (director and twist) has zero gradient g(x, p). A small change of the pattern moves it
+by dx with ``H dx + G dp = -g``. The correction minimises
+
+    |x + dx - target|^2 / (CLOSE diagonal)^2 + sum |p + dp|^2 / (size of a change)^2,
+
+both area means, changes smooth over `REACH` [mm], by Gauss-Newton steps; after each the sheet relaxes (a step that
+does not help is cut), and after each round the sheet is heated from flat, because only that tells where it goes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import splu
+
+from lce_solver.compare import align, vertex_areas
+from lce_solver.shell import Film, film_of, predict, settle
+from lce_solver.shell_energy import bent_form, bias, energy, hessian, pattern_forces
+from lce_solver.twist import twist
+from lce_solver.types import Design, Finding, Floats, Ints, Prediction, Progress, Severity, Status, line_angle, silent
+
+PARTS = {"dtheta": (1,), "full": (0, 1)}
+"""What may change: columns of the pattern, 0 the director and 1 the twist."""
+CLOSE = 3e-4
+"""Distance from the target that weighs as much as a change of the usual size [diagonals of the target]."""
+USUAL = np.deg2rad([2.0, 0.5])
+"""Usual size of a change of director and of twist [rad]."""
+REACH = 0.3
+"""Changes are smooth over this length [mm]: a domain, three thicknesses of the film."""
+ENOUGH = 0.05
+"""A sheet as near as this to its target is left as it is [% of the diagonal]."""
+LOST = 1.0
+"""Further away than this the sheet has not taken the target's shape [% of the diagonal]."""
+ROUNDS, STEPS, CUTS = 3, 5, 4
+"""Most heatings after which the sheet is corrected; steps of one correction; lengths tried of one step."""
+SAME = 1.05
+"""A sheet heated from flat that ends within this factor of the corrected equilibrium has found it."""
+GAIN = 0.95
+"""A step that leaves more than this of the misfit is the last of its round."""
+BIAS = 0.1
+"""Least energy by which the twist has to favour the target over its mirror image where the flat sheet buckles, in
+bending energies of a sheet without twist; doubled each time the sheet still ends in the mirror image."""
+THINNER = 10.0
+"""A film as many times thinner tells whether stiffness keeps a sheet from its target."""
+SEED = 1
+"""Of the imperfection."""
+LARGEST = 20_000
+"""Triangles up to which designs are corrected: the cost grows faster than the rest of the job's."""
+
+
+@dataclass(frozen=True, eq=False)
+class Try:
+    """One design on its way."""
+
+    film: Film
+    heated: Prediction
+    rms: float
+    """Distance of the heated sheet from the target [% of the diagonal]."""
+    mirror: float
+    """The same from its mirror image."""
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether the sheet took the mirror image."""
+        return self.mirror < self.rms
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """A pattern and its equilibrium."""
+
+    x: Floats
+    """(n_v, 3) [mm]."""
+    change: Floats
+    """(n_v, k) of director, twist or both at the vertices [rad]."""
+    off: Floats
+    """(n_v, 3) distance from the target [mm]."""
+    misfit: float
+    """What is minimised, twice."""
+
+
+@dataclass(frozen=True, eq=False)
+class Correction:
+    """The least-squares problem of one design."""
+
+    plan: Design
+    film: Film
+    limit: float
+    """Largest twist [rad]."""
+    columns: tuple[int, ...]
+
+    @cached_property
+    def mean(self) -> Any:
+        """Sparse (n_f, n_v): values at vertices to triangles."""
+        faces = self.film.sheet.faces
+        rows = np.arange(0, faces.size + 1, 3)
+        shape = (len(faces), len(self.plan.uv))
+        return sparse.csr_matrix((np.full(faces.size, 1 / 3), faces.ravel(), rows), shape=shape)
+
+    @cached_property
+    def weights(self) -> Floats:
+        """(n_v,) of the squared distances from the target, in 1 / mm^2."""
+        areas = vertex_areas(self.plan.surface.vertices, self.plan.surface.faces)
+        scaled: Floats = areas / areas.sum() / (CLOSE * _diagonal(self.plan)) ** 2
+        return scaled
+
+    @cached_property
+    def price(self) -> Any:
+        """Sparse (k n_v, k n_v): what a change costs, column after column."""
+        sheet = self.film.sheet
+        total = sheet.area.sum()
+        lumped = np.bincount(sheet.faces.ravel(), np.repeat(sheet.area / 3, 3)) / total
+        gradients = sheet.slopes @ sheet.slopes.swapaxes(1, 2) * (sheet.area / total)[:, None, None]
+        rough = _assemble(gradients, sheet.faces, sheet.faces, (len(sheet.uv), len(sheet.uv)))
+        one = sparse.diags(lumped) + REACH**2 * rough
+        return sparse.block_diag([one / USUAL[k] ** 2 for k in self.columns], format="csc")
+
+    def pattern(self, change: Floats) -> Film:
+        """The film with its director and twist changed, within the limit of the twist."""
+        turn = np.zeros((len(self.film.theta), 2))
+        turn[:, self.columns] = self.mean @ change
+        twisted = np.clip(self.film.dtheta + turn[:, 1], -self.limit, self.limit)
+        return replace(self.film, theta=self.film.theta + turn[:, 0], dtheta=twisted)
+
+    def state(self, x: Floats, change: Floats) -> State:
+        """Measure the equilibrium ``x`` of a pattern."""
+        off = x - align(self.plan.surface.vertices, x, self.weights).moved
+        flat = change.T.ravel()
+        misfit = float(self.weights @ (off**2).sum(axis=1) + flat @ (self.price @ flat))
+        return State(x, change, off, misfit)
+
+    def step(self, at: State) -> tuple[Floats, Floats]:
+        """Changes of shape (n_v, 3) and pattern (n_v, k) that minimise the linearised misfit.
+
+        One symmetric indefinite system: the two changes and the multipliers of the equilibrium.
+        """
+        film = self.pattern(at.change)
+        sheet, aim = film.sheet, film.at(film.material.lambda_)
+        unit = replace(film, dtheta=np.ones_like(film.dtheta)).at(film.material.lambda_)
+        n, n_f = len(at.x), len(film.theta)
+        nodes = (3 * sheet.patch[:, :, None] + np.arange(3)).reshape(n_f, 18)
+        blocks = hessian(sheet, aim, at.x).transpose(0, 1, 3, 2, 4).reshape(n_f, 18, 18)
+        stiff = _assemble(blocks, nodes, nodes, (3 * n, 3 * n))
+        forces = pattern_forces(sheet, aim, unit, at.x).reshape(n_f, 18, 2)
+        forces[np.abs(film.dtheta) >= self.limit, :, 1] = 0.0
+        each = np.arange(n_f)[:, None]
+        pulls = [_assemble(forces[..., [k]], nodes, each, (3 * n, n_f)) @ self.mean for k in self.columns]
+        scale = 1 / stiff.diagonal().mean()
+        stiff, pull = scale * stiff, scale * sparse.hstack(pulls)
+        distance = sparse.diags(np.repeat(self.weights, 3))
+        hold = -1e-16 * sparse.identity(3 * n)  # rigid motions have no multiplier
+        matrix = sparse.bmat([[distance, None, stiff], [None, self.price, pull.T], [stiff, pull, hold]], format="csc")
+        right = np.concatenate(
+            [
+                -np.repeat(self.weights, 3) * at.off.ravel(),
+                -(self.price @ at.change.T.ravel()),
+                -scale * energy(sheet, aim, at.x)[1].ravel(),
+            ]
+        )
+        factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=1e-3, options={"SymmetricMode": True})
+        found = factors.solve(right)
+        found += factors.solve(right - matrix @ found)
+        parts = len(self.columns)
+        return found[: 3 * n].reshape(n, 3), found[3 * n : (3 + parts) * n].reshape(parts, n).T
+
+    def descend(self, at: State) -> State:
+        """Gauss-Newton steps, each followed by the sheet's own relaxation, while they help."""
+        for _ in range(STEPS):
+            moved, changed = self.step(at)
+            for cut in 3.0 ** -np.arange(CUTS):
+                change = at.change + cut * changed
+                there = self.state(settle(self.pattern(change), at.x + cut * moved).vertices, change)
+                if there.misfit < at.misfit:
+                    break
+            else:
+                return at
+            before, at = at, there
+            if at.misfit > GAIN * before.misfit:
+                return at
+        return at
+
+
+def arrive(plan: Design, part: str, limit: float, progress: Progress = silent) -> tuple[Design, Finding]:
+    """Correct a design until the sheet, heated from flat, takes its target's shape; say how near it comes.
+
+    Parameters
+    ----------
+    part : a name in `PARTS`.
+    limit : largest twist either way [rad].
+    """
+    if plan.flattening.status is not Status.CONVERGED or len(plan.theta) > LARGEST:
+        return plan, _left_alone(plan)
+    columns = PARTS[part]
+    change = np.zeros((len(plan.uv), len(columns)))
+    film = film_of(plan)
+    tries: list[Try] = []
+    expected = 0.0
+    for round_ in range(ROUNDS + 1):
+        progress("equilibrium", round_ / (ROUNDS + 1))
+        tries.append(heated(plan, Correction(plan, film, limit, columns).pattern(change)))
+        if round_ == ROUNDS or tries[-1].rms < max(ENOUGH, SAME * expected):
+            break
+        wanted = BIAS * 2 ** sum(t.mirrored for t in tries[1:])
+        film = replace(film, dtheta=film.dtheta + lacking(tries[-1], wanted))
+        work = Correction(plan, film, limit, columns)
+        now = tries[-1].heated.vertices
+        start = plan.surface.vertices if tries[-1].rms > LOST else now
+        at = work.descend(work.state(settle(work.pattern(change), start).vertices, change))
+        change, expected = at.change, float(np.sqrt(np.average((at.off**2).sum(axis=1), weights=work.weights)))
+        expected *= 100 / _diagonal(plan)
+    best = min(tries, key=lambda one: one.rms)
+    progress("equilibrium", 1.0)
+    made = replace(plan, theta=line_angle(best.film.theta), dtheta=best.film.dtheta)
+    return made, _told(plan, made, tries[0], best, limit)
+
+
+def heated(plan: Design, film: Film) -> Try:
+    """Heat the film from flat and measure how far from the target it ends."""
+    found = predict(film, seed=SEED)
+    target = plan.surface.vertices
+    areas = vertex_areas(target, plan.surface.faces)
+    direct, mirror = (align(found.vertices, target, areas, reflect=reflect).rms for reflect in (False, True))
+    percent = 100 / _diagonal(plan)
+    return Try(film, found, direct * percent, mirror * percent)
+
+
+def lacking(tried: Try, wanted: float) -> Floats:
+    """(n_f,) twist to add [rad], so that it favours the target by ``wanted`` where the sheet first buckles.
+
+    There, and not at the end, the sheet decides for one side: a dome has no bending that twist could carry, but it
+    has some along its edge while it rises. The shape at that moment says which twist helps it most.
+    """
+    step, favour = favoured(tried)
+    film = tried.film
+    side = -1.0 if tried.mirrored else 1.0
+    if side * favour >= wanted:
+        return np.zeros_like(film.dtheta)
+    lambda_ = tried.heated.history[step].lambda_
+    hot, shape = replace(film.material, lambda_=lambda_), tried.heated.frames[step]
+    best = side * twist(bent_form(film.sheet, shape), film.theta, hot, film.thickness)
+    most = side * bias(film.sheet, _plain(film, lambda_), replace(film, dtheta=best).at(lambda_), shape)
+    added: Floats = min(1.0, (wanted - side * favour) / most) * best
+    return added
+
+
+def favoured(tried: Try) -> tuple[int, float]:
+    """The step of the heating after which the sheet is out of its plane, and how much the twist favours that side."""
+    off = [np.linalg.svd(x - x.mean(axis=0), compute_uv=False)[-1] / np.sqrt(len(x)) for x in tried.heated.frames]
+    step = int(np.argmax(np.append(off, np.inf) > tried.film.thickness))
+    step = min(step, len(off) - 1)
+    lambda_ = tried.heated.history[step].lambda_
+    film = tried.film
+    return step, bias(film.sheet, _plain(film, lambda_), film.at(lambda_), tried.heated.frames[step])
+
+
+def _plain(film: Film, lambda_: float) -> Any:
+    return replace(film, dtheta=np.zeros_like(film.dtheta)).at(lambda_)
+
+
+def _diagonal(plan: Design) -> float:
+    return float(np.linalg.norm(np.ptp(plan.surface.vertices, axis=0)))
+
+
+def _assemble(blocks: Floats, rows: Ints, columns: Ints, shape: tuple[int, int]) -> Any:
+    """Sparse sum of (n, i, j) ``blocks`` at ``rows`` (n, i) and ``columns`` (n, j)."""
+    row, column = np.broadcast_arrays(rows[:, :, None], columns[:, None, :])
+    return sparse.coo_matrix((blocks.ravel(), (row.ravel(), column.ravel())), shape=shape).tocsc()
+
+
+def _left_alone(plan: Design) -> Finding:
+    why = plan.flattening.status.value if len(plan.theta) <= LARGEST else f"more than {LARGEST} triangles take hours"
+    return Finding("equilibrium", Severity.INFO, f"director and twist are not corrected by simulation: {why}")
+
+
+def _told(plan: Design, made: Design, first: Try, best: Try, limit: float) -> Finding:
+    turned = np.rad2deg(np.abs((made.theta - plan.theta + np.pi / 2) % np.pi - np.pi / 2))
+    twisted = np.rad2deg(np.abs(made.dtheta - plan.dtheta))
+    text = f"heated from flat the sheet ends {best.rms:.2g}% rms of the diagonal from its target"
+    if best is not first:
+        text += (
+            f", and {first.rms:.2g}% before the simulation corrected the director (by {_rms(turned):.1f} deg rms, "
+            f"{turned.max():.1f} at most) and the twist (by {_rms(twisted):.1f}, {twisted.max():.1f})"
+        )
+    text += f"; where it buckles, its twist favours this side by {abs(favoured(best)[1]):.2g} of its bending energy"
+    short = best.rms > LOST
+    if short:
+        text += f"; {_obstacle(plan, best, limit)}"
+    return Finding("equilibrium", Severity.WARNING if short else Severity.INFO, text, best.rms, LOST, "%")
+
+
+def _rms(values: Floats) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def _obstacle(plan: Design, best: Try, limit: float) -> str:
+    """What keeps a sheet from its target."""
+    if best.mirror < LOST:
+        return f"it takes the mirror image: twist within {np.rad2deg(limit):.0f} deg is too weak to choose the side"
+    film, target = best.film, plan.surface.vertices
+    thin = replace(film, thickness=film.thickness / THINNER, dtheta=film.dtheta / THINNER)
+    there, thinner = (_away(plan, settle(one, target)) for one in (film, thin))
+    if there < LOST:
+        return "it would stay at the target, but from flat it takes another shape with the same metric"
+    if thinner < there / 2:
+        return "its stiffness against bending keeps it away: make the sheet wider or the film thinner"
+    return "its director misses the target's metric: use smaller domains or choose lambda further from 1"
+
+
+def _away(plan: Design, found: Prediction) -> float:
+    """Distance from the target [% of the diagonal]."""
+    target = plan.surface.vertices
+    return align(found.vertices, target, vertex_areas(target, plan.surface.faces)).rms * 100 / _diagonal(plan)
