@@ -131,6 +131,10 @@ def _parser() -> Parser:
     )
     tried.add_argument("job", type=Path, metavar="JOB.toml")
     tried.add_argument("--set", nargs="+", action="extend", default=[], metavar="KEY=VALUE", dest="settings")
+    plate = command("plate", _plate, "Arranges the masks of several output folders on one plate of the laser writer.")
+    plate.add_argument("folders", type=Path, nargs="+", metavar="DIR")
+    plate.add_argument("--size", choices=("4in", "5in", "6in"), default="5in", help="of the square mask plate")
+    plate.add_argument("--out", type=Path, required=True, metavar="DIR")
     readings = command("align", _align, "From mark readings to shift, rotation, scale and the worst mismatch.")
     readings.add_argument("readings", type=Path, metavar="READINGS.csv")
     new = command("new", _new, "Writes a commented job file for a mesh.")
@@ -204,6 +208,15 @@ def _verify(args: argparse.Namespace) -> int:
         elif record["severity"] != "info" or not getattr(args, "quiet", False):
             print(f"{record['severity'].value:8}{record['check']:20} {record['message']}")
     return int(has_error(records))
+
+
+def _plate(args: argparse.Namespace) -> int:
+    from lce_workbench.multiplate import combine
+
+    count = combine(args.folders, args.size, args.out)
+    if not getattr(args, "quiet", False):
+        print(f"{count} polygons of {2 * len(args.folders)} masks written to {args.out}", file=sys.stderr)
+    return 0
 
 
 def _align(args: argparse.Namespace) -> int:

@@ -30,13 +30,13 @@ def write(mask: Mask, path: Path) -> None:
         The file cannot be written.
     """
     with path.open("wb") as file:
-        file.write(_opening(mask.name))
+        file.write(opening(mask.name))
         for name, groups in mask.layers.items():
-            file.writelines(_boundaries(polygons, LAYERS[name]).tobytes() for polygons in groups)
-        file.write(_record(ENDSTR) + _record(ENDLIB))
+            file.writelines(boundaries(polygons, LAYERS[name]).tobytes() for polygons in groups)
+        file.write(closing())
 
 
-def _opening(cell: str) -> bytes:
+def opening(cell: str) -> bytes:
     """Library and cell heads."""
     stamp = struct.pack(">12H", *STAMP)
     return b"".join(
@@ -49,6 +49,11 @@ def _opening(cell: str) -> bytes:
             _record(STRNAME, _even(cell.encode("ascii"))),
         )
     )
+
+
+def closing() -> bytes:
+    """Ends of cell and library."""
+    return _record(ENDSTR) + _record(ENDLIB)
 
 
 def _record(kind: int, data: bytes = b"") -> bytes:
@@ -69,7 +74,7 @@ def _real8(value: float) -> bytes:
     return bytes([exponent]) + round(value * 2**56).to_bytes(7, "big")
 
 
-def _boundaries(polygons: Nanometres, layer: int) -> np.ndarray:
+def boundaries(polygons: Nanometres, layer: int) -> np.ndarray:
     """BOUNDARY elements of polygons (n, k, 2) as one structured array; the format repeats the first corner."""
     n, k, _ = polygons.shape
     element = np.dtype(
