@@ -37,15 +37,27 @@ def run(argv: list[str]) -> int:
         return fault.exit_code
     from lce_workbench import cli
 
-    return cli.guarded(_document, argv[1:]) if argv[:1] == ["document"] else cli.main(argv)
+    return cli.guarded(OWN[argv[0]], argv[1:]) if argv and argv[0] in OWN else cli.main(argv)
 
 
 def _document(argv: list[str]) -> int:
-    """Write the FreeCAD document of the output folder ``argv[0]``; the pipeline's own call."""
+    """Write the FreeCAD document of the output folder ``argv[0]``."""
     from lce_workbench.app.document import run_document
 
     run_document(Path(argv[0]))
     return 0
+
+
+def _drawings(argv: list[str]) -> int:
+    """Write the drawings of the output folder ``argv[0]``."""
+    from lce_workbench.app.drawings import run_drawings
+
+    run_drawings(Path(argv[0]))
+    return 0
+
+
+OWN = {"document": _document, "drawings": _drawings}
+"""The pipeline's own calls."""
 
 
 def end() -> None:

@@ -119,6 +119,7 @@ def _parser() -> Parser:
         ("predict", "Simulates the heating of a designed sheet and compares it with the target."),
         ("mask", "Draws the masks of a designed folder."),
         ("cad", "Builds the CAD files of a designed folder."),
+        ("drawings", "Draws the fabrication drawings of a designed folder."),
     ):
         sub = command(name, _stage, doc)
         sub.add_argument("folder", type=Path, metavar="DIR")

@@ -1,4 +1,4 @@
-"""The stages in order, each from what the one before wrote: design, predict, mask, cad."""
+"""The stages in order, each from what the one before wrote: design, predict, mask, cad, drawings."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def build(
         A fault that leaves ``out`` as it was.
     """
     _require_formats(job)
-    if "cad" in names and job.output.freecad:
+    if ("cad" in names and job.output.freecad) or ("drawings" in names and job.output.drawings):
         freecad()
     anew = names[0] == "design"
     former: dict[str, Any] = {} if anew else read_manifest(out)
@@ -347,6 +347,16 @@ def write_reliefs(cell: Cell, fields: Mapping[Plate, ChannelField], run: Run) ->
             write_stl(*surface(made), path.with_suffix(".stl"))
 
 
+def run_drawings(run: Run) -> Findings:
+    """Draw cell, parts and pattern for the workshop: `drawings/*.pdf`, `.svg`, `.dxf`."""
+    fabricable(read_design(run.folder / "design.npz"))
+    if run.job.output.drawings:
+        run.progress("drawings", 0.0)
+        run_freecad("drawings", run.folder, run.folder / "drawings" / "drawings.pdf")
+    run.progress("drawings", 1.0)
+    return ()
+
+
 def run_freecad(command: str, folder: Path, made: Path) -> None:
     """Run one of our commands inside FreeCAD, in a process of its own, which must make the file ``made``.
 
@@ -358,12 +368,23 @@ def run_freecad(command: str, folder: Path, made: Path) -> None:
     call = [freecad(), str(ROOT / "lce_workbench" / "batch.py"), "--", command, str(folder)]
     with tempfile.TemporaryDirectory() as home:  # where no other addon is found
         place = {"LC_ALL": "C.UTF-8", "FREECAD_USER_HOME": home}
-        done = subprocess.run(call, capture_output=True, text=True, check=False, env={**os.environ, **place})
+        try:
+            done = subprocess.run(
+                call, capture_output=True, text=True, check=False, env={**os.environ, **place}, timeout=PATIENCE
+            )
+        except subprocess.TimeoutExpired as late:
+            msg = f"FreeCAD did not write {made.name} within {PATIENCE:g} s; end other programs and try again"
+            raise EnvironmentFault(msg) from late
     if done.returncode or not made.is_file():
         said = done.stderr.strip().splitlines() or [f"no message, exit code {done.returncode}"]
-        fault = LceError(f"FreeCAD could not write the document: {said[-1].removeprefix('lce: ')}")
-        fault.exit_code = done.returncode or EnvironmentFault.exit_code
+        own = [line for line in said if line.startswith("lce: ")]
+        fault = LceError(f"FreeCAD could not write {made.name}: {(own or said)[-1].removeprefix('lce: ')}")
+        fault.exit_code = max(done.returncode, 0) or EnvironmentFault.exit_code  # a signal, as Qt's abort, is below 0
         raise fault
+
+
+PATIENCE = 900.0
+"""So long FreeCAD may work on one file [s]."""
 
 
 def freecad() -> str:
@@ -376,7 +397,10 @@ def freecad() -> str:
     """
     program = shutil.which("freecadcmd") or shutil.which("FreeCADCmd")
     if program is None:
-        msg = "freecadcmd is missing, so cad/cell.FCStd cannot be written; install FreeCAD or set output.freecad=false"
+        msg = (
+            "freecadcmd is missing, so cad/cell.FCStd and drawings/ cannot be written; install FreeCAD or set "
+            "output.freecad=false output.drawings=false"
+        )
         raise EnvironmentFault(msg)
     return program
 
@@ -386,10 +410,17 @@ STAGES: dict[str, Callable[[Run], Findings]] = {
     "predict": run_predict,
     "mask": run_mask,
     "cad": run_cad,
+    "drawings": run_drawings,
 }
 """The stages in the order of the work."""
 
-OUTPUTS = {"design": (), "predict": ("prediction.npz", "prediction.json"), "mask": ("mask",), "cad": ("cad",)}
+OUTPUTS = {
+    "design": (),
+    "predict": ("prediction.npz", "prediction.json"),
+    "mask": ("mask",),
+    "cad": ("cad",),
+    "drawings": ("drawings",),
+}
 """What a stage writes anew in a kept folder."""
 
 

@@ -279,6 +279,9 @@ class Output:
         "further CAD files: domains (outlines named with their angles), sheet (flat, and as predicted when heated), "
         "stl, 3mf (plates, patterned face up, for a microprinter), svg, dxf (outlines of all parts, true mm)",
     )
+    drawings: bool = param(True, "fabrication drawings, drawings/*.pdf, .svg, .dxf (needs freecadcmd)")
+    author: str = param("", "who drew it, for the drawings' title block")
+    date: str = param("", "date for the drawings' title block, as it shall stand there")
     step_domains: tuple[int, ...] = param((), "domains whose channels become solids; default: the most central")
     step_window_um: tuple[int, ...] = param(
         (), "x0, y0, x1, y1 [um] of a window: the domains that it touches become solids too"

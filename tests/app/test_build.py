@@ -33,12 +33,16 @@ size_um = 300.0
 """
 
 CLUSTERS = sorted(f"mask/cluster_{place.replace(' ', '_')}.png" for place in PLACES)
+DRAWN = ("1_assembly", "2_bottom_plate", "3_top_plate", "4_spacer", "5_marks", "6_channels", "7_domains")
+DRAWINGS = sorted(
+    ["drawings/drawings.pdf", *(f"drawings/{name}.{end}" for name in DRAWN for end in ("dxf", "pdf", "svg"))]
+)
 CONTRACT = [
     "cad/bottom_plate.3mf", "cad/bottom_plate.step", "cad/bottom_plate.stl", "cad/cell.FCStd", "cad/cell.glb",
     "cad/cell.step", "cad/channels_bottom.step", "cad/channels_top.step", "cad/combs_bottom.step", "cad/combs_top.step",
     "cad/domains.step", "cad/outlines.dxf", "cad/outlines.svg", "cad/sheet.step", "cad/sheet_actuated.stl",
     "cad/spacer.step",
-    "cad/top_plate.3mf", "cad/top_plate.step", "cad/top_plate.stl", "design.npz", "domains.csv", "job.toml",
+    "cad/top_plate.3mf", "cad/top_plate.step", "cad/top_plate.stl", "design.npz", "domains.csv", *DRAWINGS, "job.toml",
     "manifest.json", "mask/border.png", "mask/bottom.dxf", "mask/bottom.gds", "mask/bottom.oas", *CLUSTERS,
     "mask/domain.png", "mask/job_sheet.txt", "mask/overlay.png", "mask/overview.png", "mask/readings.csv",
     "mask/top.dxf", "mask/top.gds", "mask/top.oas", "prediction.json", "prediction.npz",
@@ -77,7 +81,7 @@ def test_the_manifest_tells_the_truth(built):
     manifest = json.loads((built / "manifest.json").read_text())
     assert {f["path"]: f["sha256"] for f in manifest["files"]} == digests(built)
     assert manifest["exit_code"] == 0
-    assert manifest["stages"] == ["design", "predict", "mask", "cad"]
+    assert manifest["stages"] == ["design", "predict", "mask", "cad", "drawings"]
     assert any(f["check"] == "material_estimate" for f in manifest["findings"])
 
 
@@ -100,7 +104,7 @@ def test_the_stages_alone_equal_the_build(built, job, tmp_path):
     out = tmp_path / "staged"
     assert main(["design", str(job), "--quiet", "--out", str(out)]) == 0
     assert sorted(p.name for p in out.iterdir()) == ["design.npz", "domains.csv", "job.toml", "manifest.json"]
-    for stage in ("predict", "mask", "cad"):
+    for stage in ("predict", "mask", "cad", "drawings"):
         assert main([stage, str(out), "--quiet"]) == 0
     assert digests(out) == digests(built)
 

@@ -1,0 +1,367 @@
+"""Fabrication drawings as TechDraw pages: added to an open document, exported as SVG, PDF and DXF.
+
+Views show shapes that follow the job's parameters in the document, and dimensions measure the views; so after a change
+and a recompute the drawings are those of the changed cell. The window that TechDraw needs may be hidden.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+import FreeCAD
+
+from lce_solver.errors import EnvironmentFault, InputError
+from lce_workbench import ROOT, packages
+from lce_workbench.app import cells
+from lce_workbench.app.cell_views import Subject
+from lce_workbench.app.drawing_files import write_dxf, write_pdf, write_svg
+from lce_workbench.app.figures import TEXT, Figure, Placed, Sheet
+from lce_workbench.app.objects import HIDDEN, Proxy, add, job_of
+from lce_workbench.app.sheets import sheets, subject_of, title_block
+from lce_workbench.app.symbols import PAPER, symbol
+from lce_workbench.core import jobfile
+from lce_workbench.core.job import Job
+from lce_workbench.outputs import told
+
+PATIENCE = 120.0
+"""TechDraw of FreeCAD 1.0 projects views in threads of its own; so long we wait for them [s]."""
+
+NEAR = 1e-6
+"""A vertex of a view is a dimension's point when it is so near, relative to the view's size."""
+
+
+class Drawn(Proxy):
+    """Something on a sheet that follows the document's parameters."""
+
+    def setup(self, obj: Any) -> None:
+        super().setup(obj)
+        add(obj, "App::PropertyString", "Sheet", "Name of the sheet", mode=HIDDEN)
+        add(obj, "App::PropertyLinkGlobal", "Design", "The design that is drawn")
+        add(obj, "App::PropertyLinkListGlobal", "Parameters", "The parameters that shape it")
+
+
+class DrawnFigure(Drawn):
+    """The edges of one view, in mm, in the plane z = 0."""
+
+    def setup(self, obj: Any) -> None:
+        super().setup(obj)
+        add(obj, "App::PropertyString", "Figure", "Name of the view", mode=HIDDEN)
+        add(obj, "App::PropertyStringList", "Texts", "What the dimensions read, in their order", mode=HIDDEN)
+
+    def execute(self, obj: Any) -> None:
+        """Draw the edges anew."""
+        figure = next(view.figure for view in sheet_of(obj).views if view.figure.name == obj.Figure)
+        obj.Shape = _edges(figure)
+        obj.Texts = [dim.text for dim in figure.dims]
+
+
+class DrawnSymbol(Drawn):
+    """What stands on a sheet beside its views."""
+
+    def setup(self, obj: Any) -> None:
+        super().setup(obj)
+        add(obj, "App::PropertyString", "Svg", "Fills, thin lines, words and tables of the sheet", mode=HIDDEN)
+
+    def execute(self, obj: Any) -> None:
+        """Draw it anew."""
+        obj.Svg = symbol(sheet_of(obj))
+
+
+def sheet_of(obj: Any) -> Sheet:
+    """The sheet that a drawn object stands on, for the parameters as they are."""
+    return next(sheet for sheet in sheets(*_now(obj.Design)) if sheet.name == obj.Sheet)
+
+
+def _now(design: Any) -> tuple[Path, Job, Job]:
+    """The design's file, the job that the parameters hold, and the one that the design was solved for."""
+    job = job_of(cells.sections(cells.cell_of(design)).values())
+    return Path(design.File), job, cells.made_for(design)
+
+
+def _edges(figure: Figure) -> Any:
+    """All outlines as one compound; edges without faces, since there is nothing to hide."""
+    import Part
+
+    return Part.makeCompound(
+        [Part.makePolygon([FreeCAD.Vector(float(x), float(y), 0.0) for x, y in edge]) for edge in figure.edges]
+    )
+
+
+def run_drawings(folder: Path) -> None:
+    """Write ``drawings/`` of an output folder from its ``job.toml`` and ``design.npz``; without a window.
+
+    Raises
+    ------
+    InputError
+        A file is missing or wrong.
+    EnvironmentFault
+        The files cannot be written, or TechDraw does not work.
+    """
+    from lce_workbench.app.document import new_cell, take_design
+
+    hidden_window()
+    # Faces of views are not used, and finding them takes long. These settings are this process's own.
+    FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Mod/TechDraw/General").SetBool("HandleFaces", False)
+    out = folder / "drawings"
+    doc = FreeCAD.newDocument("Drawings")
+    with told(out):
+        out.mkdir(exist_ok=True)
+        job = jobfile.load(folder / "job.toml")
+        take_design(new_cell(doc, job), folder / "design.npz", job)
+        export(add_pages(doc), out)
+
+
+def hidden_window() -> None:
+    """Start FreeCAD's window without showing it, for its part of TechDraw."""
+    if FreeCAD.GuiUp:
+        return
+    from PySide import QtGui
+
+    os.environ["QT_QPA_PLATFORM"] = "offscreen"
+    # FreeCAD 1.0 waits for itself for ever when what it warns of happens while it shows another warning.
+    notes = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/NotificationArea")
+    for name in ("NotificationAreaEnabled", "NonIntrusiveNotificationsEnabled"):
+        notes.SetBool(name, False)
+    # Kept in the module: FreeCAD uses it until the process ends.
+    globals()["_application"] = QtGui.QApplication.instance() or QtGui.QApplication(["lce"])
+    import FreeCADGui
+
+    FreeCADGui.showMainWindow()
+    FreeCADGui.getMainWindow().hide()
+
+
+def add_pages(doc: Any) -> list[Any]:
+    """Add the set of drawings of the document's cell, one page a sheet, or bring the one that it has up to date.
+
+    Returns the pages, in order.
+
+    Raises
+    ------
+    InputError
+        The document holds no design.
+    EnvironmentFault
+        TechDraw does not project the views.
+    """
+    cell = cells.the_cell(doc)
+    design, parameters = cells.design_of(cell), list(cells.sections(cell).values())
+    if not design.File:
+        msg = "the cell has no design to draw; solve it first"
+        raise InputError(msg)
+    subject = subject_of(*_now(design))
+    former = doc.getObject(GROUP)
+    if former is not None:
+        return _updated([obj for obj in former.Group if obj.isDerivedFrom("TechDraw::DrawPage")], subject)
+    group = doc.addObject("App::DocumentObjectGroup", GROUP)
+    made: list[tuple[Any, Placed, Any]] = []
+    pages = []
+    for sheet in sheets(*_now(design)):
+        page = _page(doc, sheet, subject)
+        common = {"Sheet": sheet.name, "Design": design, "Parameters": parameters}
+        _symbol(doc, page, sheet, common, group)
+        for view in sheet.views:
+            source = _drawn(doc, "Part::FeaturePython", DrawnFigure, f"{sheet.name[2:]}_{view.figure.name}", group)
+            _set(source, Figure=view.figure.name, **common)
+            made.append((_view(doc, page, view, source), view, page))
+        pages.append(page)
+    recompute(pages)
+    for view, placed, page in made:
+        _annotate(doc, page, view, placed)
+    recompute(pages)
+    return pages
+
+
+def _updated(pages: list[Any], subject: Subject) -> list[Any]:
+    """Pages of a former set, with all that follows the parameters and with the title blocks of today."""
+    recompute(pages)
+    for page in pages:
+        _fill(page.Template, sheet_of(_beside(page)[1]), subject)
+    return pages
+
+
+def _fill(template: Any, sheet: Sheet, subject: Subject) -> None:
+    """Write the title block."""
+    template.EditableTexts = {**template.EditableTexts, **title_block(sheet, subject)}
+
+
+GROUP = "Drawings"
+"""Name of the folder in the tree that holds what the pages show."""
+
+
+def _drawn(doc: Any, kind: str, proxy: type, name: str, group: Any) -> Any:
+    obj = doc.addObject(kind, f"Drawn_{name}")
+    proxy(obj)
+    group.addObject(obj)
+    if obj.ViewObject is not None:
+        obj.ViewObject.Visibility = False  # it lies at the origin, in the cell
+    return obj
+
+
+def _set(obj: Any, **values: Any) -> None:
+    for name, value in values.items():
+        setattr(obj, name, value)
+
+
+def _page(doc: Any, sheet: Sheet, subject: Subject) -> Any:
+    page = doc.addObject("TechDraw::DrawPage", f"Page_{sheet.name[2:]}")
+    page.Label = f"{sheet.name[0]} {sheet.title}"
+    template = doc.addObject("TechDraw::DrawSVGTemplate", f"Template_{sheet.name[2:]}")
+    template.Template = str(ROOT / "templates" / f"{sheet.paper}_landscape.svg")
+    page.Template = template
+    _fill(template, sheet, subject)
+    doc.getObject(GROUP).addObject(page)
+    return page
+
+
+def _symbol(doc: Any, page: Any, sheet: Sheet, common: dict[str, Any], group: Any) -> None:
+    source = _drawn(doc, "App::FeaturePython", DrawnSymbol, f"{sheet.name[2:]}_beside", group)
+    _set(source, **common)
+    shown = doc.addObject("TechDraw::DrawViewSymbol", f"Beside_{sheet.name[2:]}")
+    page.addView(shown)
+    shown.setExpression("Symbol", f"{source.Name}.Svg")
+    width, height = PAPER[sheet.paper]
+    _set(shown, X=width / 2, Y=height / 2, ScaleType="Custom", Scale=1.0)
+
+
+def _view(doc: Any, page: Any, placed: Placed, source: Any) -> Any:
+    view = doc.addObject("TechDraw::DrawViewPart", f"View_{source.Name[6:]}")
+    page.addView(view)
+    _set(view, Source=[source], Direction=FreeCAD.Vector(0, 0, 1), XDirection=FreeCAD.Vector(1, 0, 0))
+    _set(view, ScaleType="Custom", Scale=placed.scale)
+    _set(view, X=placed.at[0], Y=placed.at[1])  # after the scale: adding and scaling move it
+    view.Label = placed.figure.caption
+    if view.ViewObject is not None:
+        view.ViewObject.LineWidth = 0.35
+    return view
+
+
+def recompute(pages: Iterable[Any]) -> None:
+    """Recompute pages and what they show, nothing else, and wait until TechDraw has drawn every view.
+
+    Raises
+    ------
+    InputError
+        The parameters do not go together.
+    EnvironmentFault
+        It does not come to an end.
+    """
+    import FreeCADGui
+
+    views = [view for page in pages for view in page.Views]
+    for obj in (*(source for view in views for source in view.OutList if hasattr(source, "Sheet")), *views):
+        obj.recompute()  # not the document: its solids take long
+        if not obj.isValid():
+            raise InputError(obj.getStatusString())
+    end = time.monotonic() + PATIENCE
+    while waiting := [v for v in views if v.isDerivedFrom("TechDraw::DrawViewPart") and not v.getVisibleEdges()]:
+        FreeCADGui.updateGui()
+        time.sleep(0.01)
+        if time.monotonic() > end:
+            msg = f"TechDraw did not draw {waiting[0].Label} within {PATIENCE:g} s; end other programs and try again"
+            raise EnvironmentFault(msg)
+    FreeCADGui.updateGui()
+
+
+def _annotate(doc: Any, page: Any, view: Any, placed: Placed) -> None:
+    """Add the dimensions and balloons of a view."""
+    vertices = list(_vertices(view))
+    for k, dim in enumerate(placed.figure.dims):
+        shown = doc.addObject("TechDraw::DrawViewDimension", f"Dim_{view.Name[5:]}_{dim.name}")
+        shown.Type = {"x": "DistanceX", "y": "DistanceY"}[dim.axis]
+        shown.References2D = [(view, _nearest(vertices, placed.figure, at)) for at in (dim.a, dim.b)]
+        if dim.unit == "um":  # TechDraw's own format knows millimetres only
+            shown.Arbitrary = True
+            shown.setExpression("FormatSpec", f"{view.Source[0].Name}.Texts[{k}]")
+        else:
+            shown.FormatSpec = "%.4w"
+        page.addView(shown)
+        shown.X, shown.Y = placed.text_at(dim).tolist()
+        _style(shown)
+    for balloon in placed.figure.balloons:
+        shown = doc.addObject("TechDraw::DrawViewBalloon", f"Balloon_{view.Name[5:]}_{balloon.text}")
+        tip = (balloon.tip - placed.figure.middle).tolist()
+        _set(shown, SourceView=view, OriginX=tip[0], OriginY=tip[1], Text=balloon.text)
+        page.addView(shown)
+        _set(shown, X=balloon.at[0] / placed.scale, Y=balloon.at[1] / placed.scale, EndType="Dot", ShapeScale=1.0)
+        _style(shown)
+
+
+def _vertices(view: Any) -> Iterator[Any]:
+    """Vertices of a view, in its own plane from its middle."""
+    for index in count():
+        try:
+            yield view.getVertexByIndex(index).Point
+        except ValueError:
+            return
+
+
+def _nearest(vertices: Sequence[Any], figure: Figure, at: tuple[float, float]) -> str:
+    """Name of the view's vertex at a point of the figure."""
+    x, y = (at - figure.middle).tolist()
+    far = [(v.x - x) ** 2 + (v.y - y) ** 2 for v in vertices]
+    best = min(range(len(far)), key=far.__getitem__)
+    if far[best] ** 0.5 > NEAR * max(figure.size):
+        msg = f"the view {figure.name} has no vertex at {at}; report it"
+        raise RuntimeError(msg)
+    return f"Vertex{best}"
+
+
+def _style(shown: Any) -> None:
+    """Pens and text, whose size is the whole line's in FreeCAD 0.20, and that of its capitals in 1.0."""
+    look = shown.ViewObject
+    if look is not None:
+        look.LineWidth = 0.18
+        look.Fontsize = CAPITALS * TEXT if NEW else TEXT
+
+
+CAPITALS = 0.7
+"""Height of osifont's capitals, of its line."""
+
+NEW = int(FreeCAD.Version()[0]) >= 1
+"""Whether this is FreeCAD 1."""
+
+
+def export(pages: Sequence[Any], folder: Path) -> None:
+    """Write every page as SVG, PDF and DXF, and the whole set as ``drawings.pdf``; same pages, same bytes.
+
+    Raises
+    ------
+    OSError
+        A file cannot be written.
+    """
+    packages.append()
+    fonts = Path(FreeCAD.getResourceDir()) / "Mod" / "TechDraw" / "Resources" / "fonts"
+    written = []
+    for page in pages:
+        beside, source = _beside(page)
+        sheet = sheet_of(source)
+        path = folder / f"{sheet.name}.svg"
+        _export_svg(page, beside, path)
+        write_svg(path, source.Svg)
+        write_pdf([(path, sheet.paper)], fonts, path.with_suffix(".pdf"))
+        write_dxf(sheet, subject_of(*_now(source.Design)).code, path.with_suffix(".dxf"))
+        written.append((path, sheet.paper))
+    write_pdf(written, fonts, folder / "drawings.pdf")
+
+
+def _beside(page: Any) -> tuple[Any, Any]:
+    """The symbol of what stands beside a page's views, and the object that it comes from."""
+    shown = next(view for view in page.Views if view.isDerivedFrom("TechDraw::DrawViewSymbol"))
+    ((_, expression),) = shown.ExpressionEngine
+    return shown, page.Document.getObject(expression.split(".")[0])
+
+
+def _export_svg(page: Any, beside: Any, path: Path) -> None:
+    """Export a page without what stands beside its views: that goes in as it is, so that its words stay words."""
+    import FreeCADGui
+    import TechDrawGui
+
+    beside.ViewObject.Visibility = False
+    page.ViewObject.show()
+    FreeCADGui.updateGui()
+    TechDrawGui.exportPageAsSvg(page, str(path))
+    beside.ViewObject.Visibility = True
