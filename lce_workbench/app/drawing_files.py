@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -23,7 +24,7 @@ def write_svg(path: Path, beside: str) -> None:
     mark = re.search(r'\s*<g [^>]*id="DrawingContent"', text)
     assert mark is not None
     text = f'{text[: mark.start()]}\n  <g id="Beside" transform="scale(10)">{inner}</g>{text[mark.start() :]}'
-    path.write_text(text, encoding="utf-8")
+    path.write_text(ET.canonicalize(text), encoding="utf-8")  # Qt writes attributes in an order of chance
 
 
 def write_pdf(pages: Sequence[tuple[Path, str]], fonts: Path, path: Path) -> None:
