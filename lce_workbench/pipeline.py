@@ -367,7 +367,7 @@ def run_freecad(command: str, folder: Path, made: Path) -> None:
     """
     call = [freecad(), str(ROOT / "lce_workbench" / "batch.py"), "--", command, str(folder)]
     with tempfile.TemporaryDirectory() as home:  # where no other addon is found
-        place = {"LC_ALL": "C.UTF-8", "FREECAD_USER_HOME": home, "QT_HASH_SEED": "0"}
+        place = {"LC_ALL": "C.UTF-8", "FREECAD_USER_HOME": home, "QT_HASH_SEED": "0", "PYTHONHASHSEED": "0"}
         try:
             done = subprocess.run(
                 call, capture_output=True, text=True, check=False, env={**os.environ, **place}, timeout=PATIENCE
