@@ -16,14 +16,15 @@ import numpy as np
 import pytest
 from nasty import check_ends
 
+from lce_solver import judge
 from lce_solver.contest import compete
-from lce_solver.geometry import mean_edge
+from lce_solver.geometry import face_areas, mean_edge
 from lce_solver.metric import Stop, flatten, lay_flat
 from lce_solver.mirror import even_mesh
 from lce_solver.subdivision import refine
 from lce_solver.surface import load
 from lce_solver.surfaces import SURFACES
-from lce_solver.types import Material
+from lce_solver.types import Material, Status
 
 PEER = Material(0.58, float(-np.log(1.08) / np.log(0.58)))
 """The stretches 0.58 and 1.08 of the public comparison."""
@@ -79,14 +80,45 @@ def test_time_to_one_percent(benchmark, name, capsys):
 
 
 @pytest.mark.parametrize("name", REAL)
-def test_accuracy_on_real_meshes(benchmark, name, capsys):
+def test_search_against_local_global(benchmark, name, capsys):
+    """Twelve starts to within 1 % of the lowest energy that either method finds, or as near as local/global comes.
+
+    Local/global runs every start of its own, each stopped as soon as it is within 1 % of its own end: nobody could know
+    that beforehand. Ours is the whole competition as it is used, to its last tolerance.
+    """
     surface = real(name)
+    rigid, angles = lay_flat(surface), np.arange(12) * np.pi / 12
+    begin = time.process_time()
     _, starts = benchmark.pedantic(lambda: compete(surface, PEER), rounds=1)
-    winner = min(starts, key=lambda start: start.score)
-    lowest = min(start.rms for start in starts)
+    ours, best = time.process_time() - begin, min(start.energy for start in starts if start.status is Status.CONVERGED)
+    theirs, ends = 0.0, []
+    for angle in angles:
+        history = flatten(rigid, STRETCHES, angle, Stop(1e-7, 8000), method="local_global").energy
+        count = int(np.argmax(history <= 1.01 * history[-1]))
+        begin = time.process_time()
+        flatten(rigid, STRETCHES, angle, Stop(0.0, count), method="local_global")
+        theirs, ends = theirs + time.process_time() - begin, [*ends, history[-1]]
+    with capsys.disabled():
+        sys.stdout.write(
+            f"\n{name:>15} local/global {theirs:6.1f} s to E {min(ends):.4e} | ours {ours:5.1f} s to E {best:.4e} | "
+            f"{theirs / ours:5.1f} x\n"
+        )
+    assert theirs > 4 * ours
+
+
+@pytest.mark.parametrize("name", REAL)
+def test_accuracy_on_real_meshes(benchmark, name, capsys):
+    """The smallest rms of twelve starts; the competition's winner may have more, for the twist's sake."""
+    surface = real(name)
+    flat, starts = benchmark.pedantic(lambda: compete(surface, PEER), rounds=1)
+    winner = next(start for start in starts if start.status is Status.CONVERGED)
+    rigid, area = lay_flat(surface), face_areas(surface)
+    each = [flatten(rigid, STRETCHES, angle) for angle in np.arange(12) * np.pi / 12]
+    errors = [judge.stretch_errors(judge.stretches(surface, one.uv, PEER), PEER) for one in (flat, *each)]
+    lowest = min(judge.rms(error, area) for error in errors)
     with capsys.disabled():
         sys.stdout.write(f"\n{name:>15} lowest rms {lowest:.4%}, winner's {winner.rms:.4%}\n")
-    assert all(start.flipped == start.crossings == 0 for start in starts)
+    assert winner.flipped == winner.crossings == 0
     assert lowest <= LIMITS[name]
 
 
