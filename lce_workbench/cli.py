@@ -120,6 +120,7 @@ def _parser() -> Parser:
         ("mask", "Draws the masks of a designed folder."),
         ("cad", "Builds the CAD files of a designed folder."),
         ("drawings", "Draws the fabrication drawings of a designed folder."),
+        ("review", "Reads a folder's files back and writes the review: report.html, report.pdf, report.json."),
     ):
         sub = command(name, _stage, doc)
         sub.add_argument("folder", type=Path, metavar="DIR")

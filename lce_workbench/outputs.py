@@ -243,6 +243,9 @@ def write_design(design: Design, path: Path, more: Mapping[str, Any] = MappingPr
     OSError
         The file cannot be written.
     """
+    competed: Any = {
+        f"start_{field.name}": [_plain(getattr(start, field.name)) for start in design.starts] for field in STARTS
+    }
     np.savez(
         path,
         vertices=design.surface.vertices,
@@ -261,7 +264,7 @@ def write_design(design: Design, path: Path, more: Mapping[str, Any] = MappingPr
         iterations=design.flattening.iterations,
         flipped=design.flattening.flipped,
         crossings=design.flattening.crossings,
-        **{f"start_{field.name}": [_plain(getattr(start, field.name)) for start in design.starts] for field in STARTS},
+        **competed,
         **more,
     )
 

@@ -1,4 +1,4 @@
-"""The stages in order, each from what the one before wrote: design, predict, mask, cad, drawings."""
+"""The stages in order, each from what the one before wrote: design, predict, mask, cad, drawings, review."""
 
 from __future__ import annotations
 
@@ -107,23 +107,23 @@ def build(
     former: dict[str, Any] = {} if anew else read_manifest(out)
     if not anew:
         require_unchanged(out, "design.npz")
-    records = [r for r in former.get("findings", ()) if r["stage"] not in names]
-    with staged(out, replaced=None if anew else [output for name in names for output in OUTPUTS[name]]) as folder:
+    gone = {*names, "review"}  # a review of other files would not be true any more
+    records = [r for r in former.get("findings", ()) if r["stage"] not in gone]
+    stages = [s for s in former.get("stages", ()) if s not in gone]
+    with staged(out, replaced=None if anew else [output for name in gone for output in OUTPUTS[name]]) as folder:
         for name in names:
+            if name == "review":  # it reads the manifest, as whoever gets the folder does
+                _write(folder, stages, records, former.get("inputs") or inputs(job, base))
             findings = STAGES[name](Run(folder, job, base, progress, metric, scheduler))
             records += [as_record(finding, name) for finding in findings]
-        code = exit_code(records)
-        write_manifest(
-            folder,
-            {
-                "versions": versions(),
-                "stages": [*[s for s in former.get("stages", ()) if s not in names], *names],
-                "inputs": former.get("inputs") or inputs(job, base),
-                "findings": records,
-                "exit_code": code,
-            },
-        )
-    return code
+            stages.append(name)
+        _write(folder, stages, records, former.get("inputs") or inputs(job, base))
+    return exit_code(records)
+
+
+def _write(folder: Path, stages: list[str], records: list[dict[str, Any]], named: list[dict[str, Any]]) -> None:
+    entries = {"versions": versions(), "stages": stages, "inputs": named}
+    write_manifest(folder, {**entries, "findings": records, "exit_code": exit_code(records)})
 
 
 def _require_formats(job: Job) -> None:
@@ -405,12 +405,25 @@ def freecad() -> str:
     return program
 
 
+def run_review(run: Run) -> Findings:
+    """Read the files back and report on everything: `report.html`, `report.pdf`, `report.json`."""
+    from lce_workbench.review.data import assemble
+    from lce_workbench.review.write import write_review
+    from lce_workbench.verify import verify
+
+    checked = verify(run.folder, lambda stage, done: run.progress(stage, 0.6 * done))
+    review = assemble(run.folder, [as_record(finding, "review") for finding in checked])
+    write_review(review, run.folder, lambda stage, done: run.progress(stage, 0.6 + 0.4 * done))
+    return checked
+
+
 STAGES: dict[str, Callable[[Run], Findings]] = {
     "design": run_design,
     "predict": run_predict,
     "mask": run_mask,
     "cad": run_cad,
     "drawings": run_drawings,
+    "review": run_review,
 }
 """The stages in the order of the work."""
 
@@ -420,6 +433,7 @@ OUTPUTS = {
     "mask": ("mask",),
     "cad": ("cad",),
     "drawings": ("drawings",),
+    "review": ("report.html", "report.pdf", "report.json"),
 }
 """What a stage writes anew in a kept folder."""
 
@@ -433,7 +447,7 @@ def inputs(job: Job, base: Path) -> list[dict[str, Any]]:
 def versions() -> dict[str, str]:
     """What made the files."""
     found = {"lce-molds": __version__, "python": platform.python_version()}
-    for package in ("numpy", "scipy", "trimesh", "ezdxf", "cadquery"):
+    for package in ("numpy", "scipy", "trimesh", "ezdxf", "cadquery", "typst"):
         with suppress(PackageNotFoundError):
             found[package] = version(package)
     return found

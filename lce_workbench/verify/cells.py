@@ -27,7 +27,7 @@ FILES = {
     "spacer.step": ("spacer_left", "spacer_right"),
     "cell.step": (
         *("bottom_glass", "bottom_epoxy", "bottom_land", "spacer_left", "spacer_right"),
-        *("sheet", "top_land", "top_epoxy", "top_glass"),
+        *("glue_left", "glue_right", "sheet", "top_land", "top_epoxy", "top_glass"),
     ),
 }
 """File -> the parts it has to hold; the cell comes last, for what the others hold is not measured twice."""
@@ -70,6 +70,7 @@ def wanted(reference: Reference, masks: Mapping[Plate, Plates]) -> dict[str, Wan
         box = strips[k] if len(strips) == 2 else None
         volume = None if box is None else float(np.prod(box[2:] - box[:2])) * 2 * half
         found[f"spacer_{side}"] = Wanted((-half, half), box, volume)
+        found[f"glue_{side}"] = Wanted((-half, half))
     low, high = reference.flat.min(axis=0), reference.flat.max(axis=0)
     area = float(_areas(reference).sum())
     found["sheet"] = Wanted((-half, half), np.concatenate([low, high]), area * 2 * half)

@@ -46,6 +46,7 @@ CONTRACT = [
     "manifest.json", "mask/border.png", "mask/bottom.dxf", "mask/bottom.gds", "mask/bottom.oas", *CLUSTERS,
     "mask/domain.png", "mask/job_sheet.txt", "mask/overlay.png", "mask/overview.png", "mask/readings.csv",
     "mask/top.dxf", "mask/top.gds", "mask/top.oas", "prediction.json", "prediction.npz",
+    "report.html", "report.json", "report.pdf",
 ]  # fmt: skip
 
 
@@ -81,7 +82,7 @@ def test_the_manifest_tells_the_truth(built):
     manifest = json.loads((built / "manifest.json").read_text())
     assert {f["path"]: f["sha256"] for f in manifest["files"]} == digests(built)
     assert manifest["exit_code"] == 0
-    assert manifest["stages"] == ["design", "predict", "mask", "cad", "drawings"]
+    assert manifest["stages"] == ["design", "predict", "mask", "cad", "drawings", "review"]
     assert any(f["check"] == "material_estimate" for f in manifest["findings"])
 
 
@@ -104,7 +105,7 @@ def test_the_stages_alone_equal_the_build(built, job, tmp_path):
     out = tmp_path / "staged"
     assert main(["design", str(job), "--quiet", "--out", str(out)]) == 0
     assert sorted(p.name for p in out.iterdir()) == ["design.npz", "domains.csv", "job.toml", "manifest.json"]
-    for stage in ("predict", "mask", "cad", "drawings"):
+    for stage in ("predict", "mask", "cad", "drawings", "review"):
         assert main([stage, str(out), "--quiet"]) == 0
     assert digests(out) == digests(built)
 

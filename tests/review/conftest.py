@@ -1,0 +1,72 @@
+"""One small folder with everything in it, and pages in Chromium."""
+
+import shutil
+
+import pytest
+from playwright.sync_api import sync_playwright
+
+from lce_workbench.cli import main
+
+JOB = """
+[target]
+surface = "dome"
+[sheet]
+width_mm = 4.0
+[domains]
+size_um = 400.0
+[output]
+masks = ["gds"]
+pictures = false
+freecad = false
+"""
+
+ARGUMENTS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+
+
+@pytest.fixture(scope="session")
+def built(tmp_path_factory):
+    """An output folder with every stage."""
+    place = tmp_path_factory.mktemp("review")
+    (place / "dome.toml").write_text(JOB)
+    assert main(["build", str(place / "dome.toml"), "--quiet"]) == 0
+    return place / "out" / "dome"
+
+
+@pytest.fixture
+def folder(built, tmp_path):
+    """A copy that a test may spoil."""
+    return shutil.copytree(built, tmp_path / "copy")
+
+
+@pytest.fixture(scope="session")
+def chromium():
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=ARGUMENTS)
+        yield browser
+        browser.close()
+
+
+class Watched:
+    """A page with what it said on the console and asked of the network."""
+
+    def __init__(self, browser, path, **how):
+        self.page = browser.new_context(viewport=how.pop("viewport", {"width": 1600, "height": 1000}), **how).new_page()
+        self.said, self.asked = [], []
+        self.page.on("console", lambda message: message.type == "error" and self.said.append(message.text))
+        self.page.on("pageerror", lambda fault: self.said.append(str(fault)))
+        self.page.on("request", lambda request: self.asked.append(request.url))
+        self.page.goto(path.as_uri())
+
+
+@pytest.fixture
+def opened(chromium):
+    """Open a file, to be closed at the end of the test."""
+    made = []
+
+    def open_page(path, **how):
+        made.append(Watched(chromium, path, **how))
+        return made[-1]
+
+    yield open_page
+    for watched in made:
+        watched.page.context.close()
