@@ -16,17 +16,21 @@ def pump(seconds):
 
 
 def until(done, seconds=240):
-    """Let the window live until something is so; returns the longest time it was not free."""
+    """Let the window live until something is so.
+
+    Returns the longest time that it was not free, but for the last one, in which the result is taken: time of the
+    processor, because other processes of the machine do not count.
+    """
     import FreeCADGui
 
-    end, worst = time.monotonic() + seconds, 0.0
+    end, spans = time.monotonic() + seconds, []
     while not done():
         assert time.monotonic() < end, "it did not happen in time"
-        began = time.monotonic()
+        began = time.thread_time()
         FreeCADGui.updateGui()
-        worst = max(worst, time.monotonic() - began)
+        spans.append(time.thread_time() - began)
         time.sleep(0.005)
-    return worst
+    return max(spans[:-1], default=0.0)
 
 
 def activate():
@@ -36,18 +40,19 @@ def activate():
     pump(0.2)
 
 
-def panel():
-    """The open panel: its form's widgets by name, and its buttons."""
-    import FreeCADGui
-
-    from lce_workbench.gui.qt import QtWidgets
-
-    window = FreeCADGui.getMainWindow()
-    box = next(b for b in window.findChildren(QtWidgets.QDialogButtonBox) if b.isVisible())
-    return window, box
+def alive(found):
+    """The first visible widget; PySide2 may still know deleted ones."""
+    for one in found:
+        try:
+            if one.isVisible():
+                return one
+        except RuntimeError:
+            continue
+    return None
 
 
 def widget(name):
+    """A widget of the open panel."""
     import FreeCADGui
 
     from lce_workbench.gui.qt import QtWidgets
@@ -71,11 +76,15 @@ def choose(name, text):
 
 
 def press(name):
-    """Press OK or Cancel of the open panel."""
+    """Press OK or Cancel of the open panel; returns whether that can be done."""
+    import FreeCADGui
+
     from lce_workbench.gui.qt import QtWidgets
 
-    _, box = panel()
-    button = box.button(getattr(QtWidgets.QDialogButtonBox, name))
+    window = FreeCADGui.getMainWindow()
+    wanted = {"Ok": ("OK",), "Cancel": ("Cancel", "Abbrechen")}[name]
+    buttons = window.findChildren(QtWidgets.QPushButton)
+    button = alive(b for b in buttons if b.text().replace("&", "") in wanted)
     enabled = button.isEnabled()
     button.click()
     pump(0.1)
@@ -102,9 +111,223 @@ def fingerprint(doc):
     for obj in doc.Objects:
         for name in obj.PropertiesList:
             value = getattr(obj, name)
-            if hasattr(value, "Volume"):
+            if hasattr(value, "Faces"):
                 value = [value.Volume, value.BoundBox.XMin, value.BoundBox.ZMax, len(value.Faces)]
             elif name == "File":
                 value = value and hashlib.sha256(Path(value).read_bytes()).hexdigest()
             found[f"{obj.Name}.{name}"] = str(value)
     return found
+
+
+def state(doc):
+    """What an undo has to bring back: all properties, and the steps that can be undone."""
+    return fingerprint(doc), list(doc.UndoNames)
+
+
+def walk(mesh, folder, pictures=""):
+    """All steps in the window, as a user takes them; returns what was seen."""
+    import FreeCAD
+    import FreeCADGui
+    import Mesh
+
+    activate()
+    found = {"commands": described(), "undo": {}, "cancel": {}, "names": []}
+    doc = FreeCAD.newDocument("Walk")
+    Mesh.insert(mesh, doc.Name)
+    FreeCADGui.Selection.addSelection(doc.Objects[0])
+    for name, fill, slow in (
+        ("NewCell", {"sheet.width_mm": "3 mm", "domains.size_um": "300 um"}, False),
+        ("Design", {"sheet.gap_um": "0.15 mm"}, True),
+        ("Predict", {}, True),
+        ("Plates", {"channels.depth_um": "0.7 um"}, False),
+        ("ChannelWindow", {"output.step_domains": "3, 5"}, False),
+        ("Mask", {"folder": folder}, True),
+    ):
+        step(found, doc, name, fill, slow=slow, pictures=pictures)
+        FreeCADGui.Selection.clearSelection()
+        if name == "Plates":
+            FreeCADGui.activeDocument().activeView().viewIsometric()
+            FreeCADGui.SendMsgToActiveView("ViewFit")
+    found["statuses"] = {o.Label: o.Status for o in doc.Objects if "MadeFor" in o.PropertiesList}
+    found["job"] = doc.Mask.Folder
+    found["visible"] = [
+        o.Name for o in doc.Objects if o.isDerivedFrom("Part::FeaturePython") and o.ViewObject.Visibility
+    ]
+    found["colour"] = [round(c, 2) for c in doc.BottomLand.ViewObject.ShapeColor[:3]]
+    found["transparency"] = doc.TopGlass.ViewObject.Transparency
+    picture(pictures, "tree")
+    found["console"] = console()
+    return found
+
+
+def step(found, doc, name, fill, *, slow, pictures):
+    """One step: cancelled, done, undone, done again."""
+    former = state(doc)
+    run(name)
+    for field, text in fill.items():
+        write(field, text)
+    picture(pictures, name)
+    press("Cancel")
+    found["cancel"][name] = [is_open(), differences(former, state(doc))]
+    run(name)
+    for field, text in fill.items():
+        write(field, text)
+    assert press("Ok"), widget("reason").text()
+    if slow:
+        if pictures:
+            pump(3)
+            picture(pictures, f"{name}_running")
+        found.setdefault("free", []).append(until(lambda: not is_open()))
+    found["names"].append(doc.UndoNames[0])
+    done = fingerprint(doc)
+    doc.undo()
+    found["undo"][name] = differences(former, state(doc))
+    doc.redo()
+    found["undo"][f"{name} again"] = differences((done, []), (fingerprint(doc), []))
+    pump(0.2)
+
+
+def differences(one, other):
+    """Names of the properties that differ; and the undo steps, when they do."""
+    (first, steps), (second, later) = one, other
+    names = [name for name in {**first, **second} if first.get(name) != second.get(name)]
+    return sorted(names) + ([f"{steps} is now {later}"] if steps != later else [])
+
+
+def described():
+    """Command -> text, tooltip, whether its picture is there, whether it needs a cell."""
+    import FreeCADGui
+
+    found = {}
+    for name in FreeCADGui.listCommands():
+        if name.startswith("LCE_"):
+            info = FreeCADGui.Command.get(name).getInfo()
+            found[name] = [info["menuText"], info["toolTip"], Path(info["pixmap"]).is_file()]
+    return found
+
+
+def console():
+    """What the Python console shows."""
+    import FreeCADGui
+
+    from lce_workbench.gui.qt import QtWidgets
+
+    window = FreeCADGui.getMainWindow()
+    return "\n".join(w.toPlainText() for w in window.findChildren(QtWidgets.QPlainTextEdit))
+
+
+def picture(folder, name):
+    """A picture of the screen."""
+    import subprocess
+
+    if folder:
+        pump(0.8)
+        subprocess.run(["import", "-window", "root", f"{folder}/{name.lower()}.png"], check=True)
+
+
+def mistakes(folder):
+    """Wrong values, stops and missing cells."""
+    import FreeCAD
+    import FreeCADGui
+
+    from lce_workbench.app import session
+
+    activate()
+    found = {"inactive": [FreeCADGui.isCommandActive(f"LCE_{name}") for name in ("Design", "Mask", "Export")]}
+    doc = FreeCAD.newDocument("Mistakes")
+    doc.UndoMode = 1
+    session.new_cell(doc, {"target.surface": "face", "sheet.width_mm": 20.0})
+    doc.clearUndos()
+    former = state(doc)
+    found["wrong"] = {}
+    for field, text in (
+        ("sheet.width_mm", "-3 mm"),
+        ("sheet.gap_um", "6 foo"),
+        ("sheet.gap_um", "150"),
+        ("domains.size_um", "20 mm"),
+        ("solver.starts", "many"),
+        ("solver.starts", "0"),
+    ):
+        run("Design")
+        write(field, text)
+        found["wrong"][f"{field} {text}"] = [press("Ok"), is_open(), widget("reason").text()]
+        press("Cancel")
+    run("Design")
+    press("Ok")
+    seen = []
+    until(lambda: widget("stage").text() not in ("", "starting") or seen.append(1))
+    found["stage"] = widget("stage").text()
+    found["busy"] = [press("Ok"), is_open()]
+    began = time.monotonic()
+    widget("stop").click()
+    until(lambda: "stopped" in widget("reason").text())
+    found["stop"] = [time.monotonic() - began, is_open(), differences(former, state(doc))]
+    press("Cancel")
+    found["after"] = [is_open(), differences(former, state(doc))]
+    run("Design")
+    press("Ok")
+    pump(1.0)
+    press("Cancel")
+    pump(1.0)
+    found["cancelled"] = [is_open(), differences(former, state(doc))]
+    run("Mask")
+    write("folder", str(folder))
+    press("Ok")
+    found["too early"] = [is_open(), widget("reason").text()]
+    press("Cancel")
+    run("Plates")
+    press("Ok")
+    found["no design"] = [is_open(), widget("reason").text(), differences(former, state(doc))]
+    press("Cancel")
+    found["left"] = [is_open(), differences(former, state(doc))]
+    return found
+
+
+def edited(_=""):
+    """Double click on an object of the tree, an expression in a panel, an example."""
+    import FreeCAD
+    import FreeCADGui
+
+    from lce_workbench.app import session
+
+    activate()
+    found = {}
+    doc = FreeCAD.newDocument("Edited")
+    doc.UndoMode = 1
+    session.new_cell(doc, {"target.surface": "dome"})
+    doc.clearUndos()
+    FreeCADGui.getDocument(doc.Name).setEdit("SheetParameters")
+    pump(0.3)
+    write("sheet.gap_um", "120 um")
+    found["edit"] = [press("Ok"), is_open(), doc.SheetParameters.Gap.Value, doc.UndoNames]
+    doc.undo()
+    found["undone"] = doc.SheetParameters.Gap.Value
+    doc.SheetParameters.setExpression("Gap", "ChannelsParameters.Width * 130")
+    doc.recompute()
+    run("Design")
+    write("domains.size_um", "400 um")
+    press("Cancel")
+    found["expression"] = [doc.SheetParameters.Gap.Value, doc.SheetParameters.ExpressionEngine]
+    for name in ("Face", "Dome", "Saddle", "Leaf"):
+        FreeCADGui.runCommand(f"LCE_Example{name}", 0)
+        pump(0.2)
+        found[name] = [FreeCAD.ActiveDocument.Cell.Label, FreeCAD.ActiveDocument.UndoNames]
+    return found
+
+
+def german(_=""):
+    """Words of the window in German."""
+    import FreeCAD
+    import FreeCADGui
+
+    FreeCADGui.setLocale("German")
+    pump(0.2)
+    activate()
+    from lce_workbench.app import session
+
+    doc = FreeCAD.newDocument("Deutsch")
+    session.new_cell(doc, {"target.surface": "dome"})
+    run("Design")
+    found = {"tip": widget("sheet.gap_um").toolTip(), "stop": widget("stop").text()}
+    press("Cancel")
+    return {**found, "commands": described()}

@@ -46,11 +46,9 @@ class Ended:
 def make_project(folder: Path) -> Path:
     """A checkout in a folder with a blank in its name: the real launcher and batch entry, a command line that tells."""
     root = folder / "a check out"
-    (root / "lce_workbench").mkdir(parents=True)
-    for name in ("solver", "resources/icons", "lce_workbench/gui"):
+    for name in ("solver", "resources", "lce_workbench"):
         shutil.copytree(ROOT / name, root / name, ignore=shutil.ignore_patterns("__pycache__"))
-    package = [f"lce_workbench/{name}.py" for name in ("__init__", "__main__", "packages", "batch")]
-    for name in ("lce", "Init.py", "InitGui.py", "package.xml", *package):
+    for name in ("lce", "Init.py", "InitGui.py", "package.xml"):
         shutil.copy(ROOT / name, root / name)
     (root / "lce_workbench" / "cli.py").write_text(TELLING_CLI)
     return root

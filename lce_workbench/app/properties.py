@@ -120,3 +120,13 @@ def write(obj: Any, section: Any) -> None:
 def read(obj: Any, section: type) -> Any:
     """Return the section that the properties of ``obj`` hold."""
     return section(**{prop.field: prop.read(obj) for prop in properties(section)})
+
+
+def label(section: str, name: str) -> str:
+    """A property as a label: "TwistLimit" of the sheet becomes "Sheet twist limit"."""
+    spaced = "".join(f" {c.lower()}" if c.isupper() else c for c in name)
+    return f"{ONE.get(section, section)}{spaced}".capitalize()
+
+
+ONE = {"domains": "domain", "channels": "channel", "plates": "plate", "marks": "mark"}
+"""Sections named in the plural -> one of them."""

@@ -182,7 +182,7 @@ class Quantity(Editor):
 
     def make(self) -> Any:
         self.loader = FreeCADGui.UiLoader()  # kept: the widget goes with it
-        self.box = self.loader.createWidget("Gui::QuantitySpinBox")
+        self.box = _created(self.loader, "Gui::QuantitySpinBox")
         self.box.setProperty("unit", KINDS_OF_UNIT[self.unit][0])
         if self.obj is not None:
             FreeCADGui.ExpressionBinding(self.box).bind(self.obj, self.prop.name)
@@ -203,7 +203,7 @@ class Quantity(Editor):
             written = FreeCAD.Units.Quantity(text)
         except (ValueError, ArithmeticError, OSError):
             written = None
-        if written is None or written.Unit != KINDS_OF_UNIT[self.unit][1]:
+        if written is None or written.Unit not in (KINDS_OF_UNIT[self.unit][1], PLAIN):  # plain: of the box's own unit
             msg = f"{self.name} is {text!r}; give a number with a unit, for example {KINDS_OF_UNIT[self.unit][2]}"
             raise InputError(msg)
         now = self.box.property("rawValue")
@@ -217,6 +217,23 @@ class Quantity(Editor):
         self.widget = self.box = self.loader = None
 
 
+def _created(loader: Any, kind: str) -> Any:
+    """One of FreeCAD's own widgets.
+
+    PySide2 takes a new widget for a deleted one of which Python still knows something when it lies at its address; then
+    another one is made while the first keeps the address.
+    """
+    dead = []
+    while True:
+        widget = loader.createWidget(kind)
+        try:
+            widget.objectName()
+        except RuntimeError:
+            dead.append(widget)
+        else:
+            return widget
+
+
 DIGITS = 9
 """Of a quantity, as shown."""
 
@@ -226,6 +243,10 @@ KINDS_OF_UNIT = {
     "deg": ("deg", FreeCAD.Units.Angle, "5 deg"),
 }
 """Unit of a parameter -> unit of the box, FreeCAD's kind of unit, an example."""
+
+
+PLAIN = FreeCAD.Units.Unit()
+"""No unit."""
 
 
 class OptionalQuantity(Quantity):
@@ -259,16 +280,13 @@ class OptionalQuantity(Quantity):
 
 
 class KeepOpen(QtCore.QObject):
-    """Enter in a field goes to the next one; FreeCAD would close the panel."""
+    """Enter, which fields hand on to their form, goes to the next field; FreeCAD would close the panel."""
 
-    def eventFilter(self, widget: Any, event: Any) -> bool:  # noqa: N802  Qt's name
-        """Take Enter away from fields."""
+    def eventFilter(self, form: Any, event: Any) -> bool:  # noqa: N802  Qt's name
+        """Take Enter away from what is around the form."""
         # PySide2 may hand over something else while a panel is being deleted.
         pressed = isinstance(event, QtGui.QKeyEvent) and event.type() == QtCore.QEvent.KeyPress
-        if pressed and event.key() in (QtCore.Qt.Key_Return, QtCore.Qt.Key_Enter) and isinstance(widget, FIELDS):
-            widget.focusNextChild()
-            return True
-        return False
-
-
-FIELDS = (QtWidgets.QLineEdit, QtWidgets.QAbstractSpinBox, QtWidgets.QComboBox, QtWidgets.QCheckBox)
+        if not pressed or event.key() not in (QtCore.Qt.Key_Return, QtCore.Qt.Key_Enter):
+            return False
+        form.focusNextChild()
+        return True

@@ -14,7 +14,7 @@ from lce_solver.errors import LceError
 from lce_solver.surfaces import SURFACES
 from lce_workbench.app import session
 from lce_workbench.app.objects import SECTIONS
-from lce_workbench.app.properties import properties
+from lce_workbench.app.properties import label, properties
 from lce_workbench.core import jobfile, material
 from lce_workbench.core.job import Job
 from lce_workbench.gui import editors, memory
@@ -33,6 +33,7 @@ class Panel:
         self.step, self.doc, self.cell, self.source = step, doc, cell, source
         self.former = session.job(cell) if cell else _first(step, source)
         self.running: Running | None = None
+        self.closed = False
         self.buttons: Any = None
         self.editors: dict[str, editors.Editor] = {}
         self.keep = editors.KeepOpen()
@@ -69,8 +70,7 @@ class Panel:
         column.addWidget(self.reason)
         self.add_progress(column)
         column.addStretch()
-        for widget in form.findChildren(QtWidgets.QWidget):
-            widget.installEventFilter(self.keep)
+        form.installEventFilter(self.keep)
         return form
 
     def add_row(self, rows: Any, name: str) -> None:
@@ -156,6 +156,8 @@ class Panel:
 
     def check(self, *_: Any) -> str:
         """Show why OK cannot be pressed; "" when it can."""
+        if self.closed:
+            return ""  # Qt tells of fields that it is deleting
         try:
             self.settings()
             words = "" if not self.step.folder or self.folder.text().strip() else tr("choose a folder for the files")
@@ -276,9 +278,10 @@ class Panel:
 
     def close(self) -> None:
         """Close the panel, and let go of what Qt deletes."""
-        self.buttons = None
+        self.buttons, self.closed = None, True
         for editor in self.editors.values():
             editor.drop()
+        self.editors = {}
         FreeCADGui.Control.closeDialog()
         if self.doc.Name in FreeCAD.listDocuments() and FreeCADGui.getDocument(self.doc.Name):
             FreeCADGui.getDocument(self.doc.Name).resetEdit()
@@ -348,13 +351,3 @@ KINDS: dict[str, type[editors.Editor]] = {
     "App::PropertyIntegerList": editors.List,
 }
 """Type of a property -> its editor."""
-
-
-def label(section: str, name: str) -> str:
-    """A property as a label: "TwistLimit" of the sheet becomes "Sheet twist limit"."""
-    spaced = "".join(f" {c.lower()}" if c.isupper() else c for c in name)
-    return f"{ONE.get(section, section)}{spaced}".capitalize()
-
-
-ONE = {"domains": "domain", "channels": "channel", "plates": "plate", "marks": "mark"}
-"""Sections named in the plural -> one of them."""

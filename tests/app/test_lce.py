@@ -172,6 +172,16 @@ def test_gui_opens_with_the_workbench_chosen(used: tuple[Machine, list[Ended]], 
     assert not (machine.home / "freecad" / "Mod").exists()  # nothing of ours is left with the user
 
 
+def test_gui_without_a_screen_is_one_sentence(project: Path, tmp_path: Path) -> None:
+    env = environment(tmp_path / "home")
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"):
+        env.pop(name, None)
+    ended = start(project / "lce", "gui", env=env, cwd=tmp_path)
+    assert ended.code == 4
+    assert ended.err.startswith("lce: No screen: DISPLAY is not set")
+    assert ended.err.count("\n") == 1
+
+
 def test_new_pins_are_installed_in_place(used: tuple[Machine, list[Ended]]) -> None:
     machine, _ = used
     wheel(machine.wheels, "tiny", "2.0")

@@ -1,0 +1,718 @@
+<?xml version="1.0" encoding="utf-8"?>
+<!DOCTYPE TS>
+<TS version="2.1" language="de" sourcelanguage="en">
+ <context>
+  <name>LceMold</name>
+  <message>
+   <source>Opens a new document with one of the shipped examples, ready to be designed</source>
+   <translation>Öffnet ein neues Dokument mit einem der mitgelieferten Beispiele, bereit zum Entwurf</translation>
+  </message>
+  <message>
+   <source>Examples</source>
+   <translation>Beispiele</translation>
+  </message>
+  <message>
+   <source>Opens this example</source>
+   <translation>Öffnet dieses Beispiel</translation>
+  </message>
+  <message>
+   <source>Meshes</source>
+   <translation>Netze</translation>
+  </message>
+  <message>
+   <source>Choose a file</source>
+   <translation>Datei wählen</translation>
+  </message>
+  <message>
+   <source>(none)</source>
+   <translation>(keine)</translation>
+  </message>
+  <message>
+   <source>More</source>
+   <translation>Mehr</translation>
+  </message>
+  <message>
+   <source>Stop</source>
+   <translation>Anhalten</translation>
+  </message>
+  <message>
+   <source>starting</source>
+   <translation>beginnt</translation>
+  </message>
+  <message>
+   <source>Preset</source>
+   <translation>Vorgabe</translation>
+  </message>
+  <message>
+   <source>Folder</source>
+   <translation>Ordner</translation>
+  </message>
+  <message>
+   <source>(as below)</source>
+   <translation>(wie unten)</translation>
+  </message>
+  <message>
+   <source>choose a folder for the files</source>
+   <translation>Ordner für die Dateien wählen</translation>
+  </message>
+  <message>
+   <source>stopping</source>
+   <translation>wird angehalten</translation>
+  </message>
+  <message>
+   <source>Target</source>
+   <translation>Ziel</translation>
+  </message>
+  <message>
+   <source>New Cell…</source>
+   <translation>Neue Zelle …</translation>
+  </message>
+  <message>
+   <source>Starts a cell: the surface to make, the material, the size of the sheet</source>
+   <translation>Beginnt eine Zelle: die gewünschte Fläche, das Material, die Größe des Films</translation>
+  </message>
+  <message>
+   <source>New cell</source>
+   <translation>Neue Zelle</translation>
+  </message>
+  <message>
+   <source>Design…</source>
+   <translation>Entwurf …</translation>
+  </message>
+  <message>
+   <source>Solves the flat sheet, its director and its twist for the target</source>
+   <translation>Berechnet den flachen Film, seinen Direktor und dessen Verdrillung für das Ziel</translation>
+  </message>
+  <message>
+   <source>Design</source>
+   <translation>Entwurf</translation>
+  </message>
+  <message>
+   <source>Predict…</source>
+   <translation>Vorhersage …</translation>
+  </message>
+  <message>
+   <source>Simulates the heating of the sheet and compares it with the target</source>
+   <translation>Simuliert das Erwärmen des Films und vergleicht das Ergebnis mit dem Ziel</translation>
+  </message>
+  <message>
+   <source>Predict</source>
+   <translation>Vorhersage</translation>
+  </message>
+  <message>
+   <source>Plates and Spacer…</source>
+   <translation>Platten und Abstandshalter …</translation>
+  </message>
+  <message>
+   <source>Adds the two plates, the spacer and the film around the sheet</source>
+   <translation>Fügt die zwei Platten, den Abstandshalter und den Film hinzu</translation>
+  </message>
+  <message>
+   <source>Plates and spacer</source>
+   <translation>Platten und Abstandshalter</translation>
+  </message>
+  <message>
+   <source>Channel Window…</source>
+   <translation>Kanalausschnitt …</translation>
+  </message>
+  <message>
+   <source>Shows the channels of the domains you name as solids</source>
+   <translation>Zeigt die Kanäle der genannten Domänen als Körper</translation>
+  </message>
+  <message>
+   <source>Channel window</source>
+   <translation>Kanalausschnitt</translation>
+  </message>
+  <message>
+   <source>Mask…</source>
+   <translation>Maske …</translation>
+  </message>
+  <message>
+   <source>Writes the masks of both plates for the laser writer</source>
+   <translation>Schreibt die Masken beider Platten für den Laserschreiber</translation>
+  </message>
+  <message>
+   <source>Mask</source>
+   <translation>Maske</translation>
+  </message>
+  <message>
+   <source>Drawings</source>
+   <translation>Zeichnungen</translation>
+  </message>
+  <message>
+   <source>Adds the fabrication drawings of the cell to the document</source>
+   <translation>Fügt dem Dokument die Fertigungszeichnungen der Zelle hinzu</translation>
+  </message>
+  <message>
+   <source>Review…</source>
+   <translation>Prüfung …</translation>
+  </message>
+  <message>
+   <source>Writes all files, reads them back and lists what was found</source>
+   <translation>Schreibt alle Dateien, liest sie zurück und listet die Befunde auf</translation>
+  </message>
+  <message>
+   <source>Review</source>
+   <translation>Prüfung</translation>
+  </message>
+  <message>
+   <source>Export…</source>
+   <translation>Export …</translation>
+  </message>
+  <message>
+   <source>Writes everything: table, masks, CAD files and report, as ./lce build does</source>
+   <translation>Schreibt alles: Tabelle, Masken, CAD-Dateien und Bericht, wie ./lce build</translation>
+  </message>
+  <message>
+   <source>Export</source>
+   <translation>Export</translation>
+  </message>
+  <message>
+   <source>Face</source>
+   <translation>Gesicht</translation>
+  </message>
+  <message>
+   <source>Dome</source>
+   <translation>Kuppel</translation>
+  </message>
+  <message>
+   <source>Saddle</source>
+   <translation>Sattel</translation>
+  </message>
+  <message>
+   <source>Leaf</source>
+   <translation>Blatt</translation>
+  </message>
+  <message>
+   <source>Material</source>
+   <translation>Material</translation>
+  </message>
+  <message>
+   <source>Sheet</source>
+   <translation>Film</translation>
+  </message>
+  <message>
+   <source>Domains</source>
+   <translation>Domänen</translation>
+  </message>
+  <message>
+   <source>Channels</source>
+   <translation>Kanäle</translation>
+  </message>
+  <message>
+   <source>Plates</source>
+   <translation>Platten</translation>
+  </message>
+  <message>
+   <source>Marks</source>
+   <translation>Marken</translation>
+  </message>
+  <message>
+   <source>Spacer</source>
+   <translation>Abstandshalter</translation>
+  </message>
+  <message>
+   <source>Solver</source>
+   <translation>Löser</translation>
+  </message>
+  <message>
+   <source>Prediction</source>
+   <translation>Vorhersage</translation>
+  </message>
+  <message>
+   <source>Output</source>
+   <translation>Ausgabe</translation>
+  </message>
+  <message>
+   <source>Target mesh</source>
+   <translation>Zielnetz</translation>
+  </message>
+  <message>
+   <source>mesh file: STL, OBJ, PLY or OFF, relative to the job file</source>
+   <translation>Netzdatei: STL, OBJ, PLY oder OFF, relativ zur Auftragsdatei</translation>
+  </message>
+  <message>
+   <source>Target surface</source>
+   <translation>Zielfläche</translation>
+  </message>
+  <message>
+   <source>a shipped surface instead of a mesh: dome, saddle, leaf, cone, sphere-zone, face</source>
+   <translation>eine mitgelieferte Fläche statt eines Netzes: dome, saddle, leaf, cone, sphere-zone, face</translation>
+  </message>
+  <message>
+   <source>Target subdivision</source>
+   <translation>Unterteilung des Ziels</translation>
+  </message>
+  <message>
+   <source>how a kept mesh coarser than the domains is refined: loop for smooth surfaces, midpoint for faceted ones</source>
+   <translation>wie ein behaltenes Netz verfeinert wird, das gröber als die Domänen ist: loop für glatte, midpoint für facettierte Flächen</translation>
+  </message>
+  <message>
+   <source>Target remesh</source>
+   <translation>Ziel neu vernetzen</translation>
+  </message>
+  <message>
+   <source>mesh the target anew, with even triangles of the domains' size; false keeps the triangles of the input</source>
+   <translation>das Ziel neu vernetzen, mit gleichmäßigen Dreiecken von der Größe der Domänen; nein behält die Dreiecke der Eingabe</translation>
+  </message>
+  <message>
+   <source>Target flip</source>
+   <translation>Ziel wenden</translation>
+  </message>
+  <message>
+   <source>turn the surface over, so that its other side becomes the top of the sheet</source>
+   <translation>die Fläche wenden, sodass ihre andere Seite die Oberseite des Films wird</translation>
+  </message>
+  <message>
+   <source>Material preset</source>
+   <translation>Materialvorgabe</translation>
+  </message>
+  <message>
+   <source>name of a preset in resources/materials.toml (rm82-pdt-1to1 when nothing is given)</source>
+   <translation>Name einer Vorgabe in resources/materials.toml (rm82-pdt-1to1, wenn nichts angegeben ist)</translation>
+  </message>
+  <message>
+   <source>Material lambda</source>
+   <translation>Material Lambda</translation>
+  </message>
+  <message>
+   <source>stretch along the director at the target temperature</source>
+   <translation>Streckung längs des Direktors bei der Zieltemperatur</translation>
+  </message>
+  <message>
+   <source>Material nu</source>
+   <translation>Material Nu</translation>
+  </message>
+  <message>
+   <source>stretch across the director is lambda^-nu; 0.5 conserves volume</source>
+   <translation>die Streckung quer zum Direktor ist Lambda^-Nu; 0,5 erhält das Volumen</translation>
+  </message>
+  <message>
+   <source>Material curve</source>
+   <translation>Materialkurve</translation>
+  </message>
+  <message>
+   <source>CSV file T_C, lambda_parallel, lambda_perpendicular, relative to the job file</source>
+   <translation>CSV-Datei T_C, lambda_parallel, lambda_perpendicular, relativ zur Auftragsdatei</translation>
+  </message>
+  <message>
+   <source>Material temperature</source>
+   <translation>Materialtemperatur</translation>
+  </message>
+  <message>
+   <source>temperature at which the curve is read</source>
+   <translation>Temperatur, bei der die Kurve abgelesen wird</translation>
+  </message>
+  <message>
+   <source>Sheet width</source>
+   <translation>Filmbreite</translation>
+  </message>
+  <message>
+   <source>longest side of the flat sheet</source>
+   <translation>längste Seite des flachen Films</translation>
+  </message>
+  <message>
+   <source>Sheet gap</source>
+   <translation>Spalt</translation>
+  </message>
+  <message>
+   <source>film thickness = spacer thickness</source>
+   <translation>Filmdicke = Dicke des Abstandshalters</translation>
+  </message>
+  <message>
+   <source>Sheet twist gain</source>
+   <translation>Verdrillungsfaktor</translation>
+  </message>
+  <message>
+   <source>multiplies the twist; 2 reproduces the paper's S5 as printed</source>
+   <translation>vervielfacht die Verdrillung; 2 ergibt S5, wie es in der Arbeit gedruckt ist</translation>
+  </message>
+  <message>
+   <source>Sheet twist limit</source>
+   <translation>Verdrillungsgrenze</translation>
+  </message>
+  <message>
+   <source>largest twist through the thickness; what is beyond is cut off</source>
+   <translation>größte Verdrillung durch die Dicke; was darüber liegt, wird abgeschnitten</translation>
+  </message>
+  <message>
+   <source>Sheet edge overdrive</source>
+   <translation>Randverstärkung</translation>
+  </message>
+  <message>
+   <source>multiply the twist by 1 + 5 exp(-d / 2 mm), d = distance to the edge</source>
+   <translation>die Verdrillung mit 1 + 5 exp(-d / 2 mm) multiplizieren, d = Abstand zum Rand</translation>
+  </message>
+  <message>
+   <source>Domain kind</source>
+   <translation>Domänenart</translation>
+  </message>
+  <message>
+   <source>shape of the domains: the design's triangles, hexagons, or the cells of a centroidal Voronoi tessellation</source>
+   <translation>Form der Domänen: die Dreiecke des Entwurfs, Sechsecke oder die Zellen einer zentrierten Voronoi-Zerlegung</translation>
+  </message>
+  <message>
+   <source>Domain size</source>
+   <translation>Domänengröße</translation>
+  </message>
+  <message>
+   <source>mean edge of a triangle, or between the centres of neighbours</source>
+   <translation>mittlere Kante eines Dreiecks oder Abstand der Mitten von Nachbarn</translation>
+  </message>
+  <message>
+   <source>Channel width</source>
+   <translation>Kanalbreite</translation>
+  </message>
+  <message>
+   <source>channel width</source>
+   <translation>Breite eines Kanals</translation>
+  </message>
+  <message>
+   <source>Channel spacing</source>
+   <translation>Kanalabstand</translation>
+  </message>
+  <message>
+   <source>land between two channels</source>
+   <translation>Steg zwischen zwei Kanälen</translation>
+  </message>
+  <message>
+   <source>Channel depth</source>
+   <translation>Kanaltiefe</translation>
+  </message>
+  <message>
+   <source>channel depth</source>
+   <translation>Tiefe eines Kanals</translation>
+  </message>
+  <message>
+   <source>Channel guard</source>
+   <translation>Kanalrand</translation>
+  </message>
+  <message>
+   <source>channels end this far inside their domain, so that neighbours stay two guards apart</source>
+   <translation>so weit vor dem Rand ihrer Domäne enden Kanäle, sodass Nachbarn zwei Ränder Abstand halten</translation>
+  </message>
+  <message>
+   <source>Channel align phase</source>
+   <translation>Kanalphasen angleichen</translation>
+  </message>
+  <message>
+   <source>shift each domain's channels so that they meet a neighbour's, where the directions differ by under 5 deg</source>
+   <translation>die Kanäle jeder Domäne so verschieben, dass sie die des Nachbarn treffen, wo sich die Richtungen um weniger als 5 Grad unterscheiden</translation>
+  </message>
+  <message>
+   <source>Plate carrier</source>
+   <translation>Trägerglas</translation>
+  </message>
+  <message>
+   <source>standard glass, width x height in mm; auto: the smallest that fits, or width_mm and height_mm</source>
+   <translation>Standardglas, Breite x Höhe in mm; auto: das kleinste passende, oder width_mm und height_mm</translation>
+  </message>
+  <message>
+   <source>Plate width</source>
+   <translation>Plattenbreite</translation>
+  </message>
+  <message>
+   <source>glass width (x); default: smallest standard glass</source>
+   <translation>Breite des Glases (x); Standard: kleinstes Standardglas</translation>
+  </message>
+  <message>
+   <source>Plate height</source>
+   <translation>Plattenhöhe</translation>
+  </message>
+  <message>
+   <source>glass height (y)</source>
+   <translation>Höhe des Glases (y)</translation>
+  </message>
+  <message>
+   <source>Plate glass</source>
+   <translation>Glasdicke</translation>
+  </message>
+  <message>
+   <source>glass thickness</source>
+   <translation>Dicke des Glases</translation>
+  </message>
+  <message>
+   <source>Plate epoxy</source>
+   <translation>Epoxidschicht</translation>
+  </message>
+  <message>
+   <source>epoxy layer under the channels</source>
+   <translation>Epoxidschicht unter den Kanälen</translation>
+  </message>
+  <message>
+   <source>Plate chamfer</source>
+   <translation>Fase</translation>
+  </message>
+  <message>
+   <source>chamfer of the glass's outer edges, at 45 deg</source>
+   <translation>Fase der Außenkanten des Glases, unter 45 Grad</translation>
+  </message>
+  <message>
+   <source>Plate release</source>
+   <translation>Entformungsschräge</translation>
+  </message>
+  <message>
+   <source>release taper of the epoxy's sides, narrower at the film</source>
+   <translation>Entformungsschräge der Epoxidseiten, zum Film hin schmaler</translation>
+  </message>
+  <message>
+   <source>Plate notch</source>
+   <translation>Griffkerbe</translation>
+  </message>
+  <message>
+   <source>handling notch: what is cut from a lower corner, the bottom plate's left and the top plate's right one</source>
+   <translation>Griffkerbe: was an einer unteren Ecke abgeschnitten wird, links an der unteren, rechts an der oberen Platte</translation>
+  </message>
+  <message>
+   <source>Plate engraving</source>
+   <translation>Gravur</translation>
+  </message>
+  <message>
+   <source>depth of BOTTOM or TOP and the design's code in the glass's outer face</source>
+   <translation>Tiefe von BOTTOM oder TOP und dem Code des Entwurfs in der Außenseite des Glases</translation>
+  </message>
+  <message>
+   <source>Plate frame</source>
+   <translation>Ausrichtrahmen</translation>
+  </message>
+  <message>
+   <source>wall of an alignment frame around both plates; 0: no frame</source>
+   <translation>Wand eines Ausrichtrahmens um beide Platten; 0: kein Rahmen</translation>
+  </message>
+  <message>
+   <source>Plate frame clearance</source>
+   <translation>Spiel des Rahmens</translation>
+  </message>
+  <message>
+   <source>between the plates and the alignment frame</source>
+   <translation>zwischen den Platten und dem Ausrichtrahmen</translation>
+  </message>
+  <message>
+   <source>Mark clearance</source>
+   <translation>Abstand der Marken</translation>
+  </message>
+  <message>
+   <source>from the sheet's bounding box to the marks</source>
+   <translation>vom Hüllrechteck des Films zu den Marken</translation>
+  </message>
+  <message>
+   <source>Mark tolerance</source>
+   <translation>Toleranz der Marken</translation>
+  </message>
+  <message>
+   <source>largest accepted mismatch of the plates</source>
+   <translation>größter zulässiger Versatz der Platten</translation>
+  </message>
+  <message>
+   <source>Mark grating</source>
+   <translation>Gitter in Marken</translation>
+  </message>
+  <message>
+   <source>fill the marks with the channels' grating, so that they are dark in the microscope</source>
+   <translation>die Marken mit dem Gitter der Kanäle füllen, sodass sie im Mikroskop dunkel sind</translation>
+  </message>
+  <message>
+   <source>Mark fields</source>
+   <translation>Testfelder</translation>
+  </message>
+  <message>
+   <source>test fields outside the sheet; leave out any</source>
+   <translation>Testfelder außerhalb des Films; jedes kann entfallen</translation>
+  </message>
+  <message>
+   <source>Mark printed label</source>
+   <translation>Aufgedruckter Text</translation>
+  </message>
+  <message>
+   <source>your own words beside the design's code: capital letters, digits, space, + - . /</source>
+   <translation>eigener Text neben dem Code des Entwurfs: Großbuchstaben, Ziffern, Leerzeichen, + - . /</translation>
+  </message>
+  <message>
+   <source>Spacer strip</source>
+   <translation>Abstandsstreifen</translation>
+  </message>
+  <message>
+   <source>width of a strip</source>
+   <translation>Breite eines Streifens</translation>
+  </message>
+  <message>
+   <source>Spacer clearance</source>
+   <translation>Abstand der Streifen</translation>
+  </message>
+  <message>
+   <source>between strips and sheet, and strips and marks</source>
+   <translation>zwischen Streifen und Film sowie Streifen und Marken</translation>
+  </message>
+  <message>
+   <source>Spacer glue</source>
+   <translation>Kleberand</translation>
+  </message>
+  <message>
+   <source>free glass outside each strip for the glue</source>
+   <translation>freies Glas außerhalb jedes Streifens für den Kleber</translation>
+  </message>
+  <message>
+   <source>Spacer bead</source>
+   <translation>Kleberaupe</translation>
+  </message>
+  <message>
+   <source>width of the glue beads there, at most glue_mm; 0: none</source>
+   <translation>Breite der Kleberaupen dort, höchstens glue_mm; 0: keine</translation>
+  </message>
+  <message>
+   <source>Solver starts</source>
+   <translation>Starts des Lösers</translation>
+  </message>
+  <message>
+   <source>number of stretch directions that compete</source>
+   <translation>Anzahl der Streckrichtungen, die im Wettbewerb stehen</translation>
+  </message>
+  <message>
+   <source>Solver tolerance</source>
+   <translation>Toleranz des Lösers</translation>
+  </message>
+  <message>
+   <source>relative energy decrease at which the solver stops</source>
+   <translation>relative Abnahme der Energie, bei der der Löser anhält</translation>
+  </message>
+  <message>
+   <source>Solver max iterations</source>
+   <translation>Iterationsgrenze</translation>
+  </message>
+  <message>
+   <source>iteration limit of one start</source>
+   <translation>Iterationsgrenze eines Starts</translation>
+  </message>
+  <message>
+   <source>Prediction seed</source>
+   <translation>Startwert der Vorhersage</translation>
+  </message>
+  <message>
+   <source>seed of the imperfection that the sheet starts with</source>
+   <translation>Startwert der Unebenheit, mit der der Film beginnt</translation>
+  </message>
+  <message>
+   <source>Prediction imperfection</source>
+   <translation>Unebenheit</translation>
+  </message>
+  <message>
+   <source>deviation of that imperfection, in thicknesses</source>
+   <translation>Streuung dieser Unebenheit, in Filmdicken</translation>
+  </message>
+  <message>
+   <source>Prediction steps</source>
+   <translation>Schritte der Vorhersage</translation>
+  </message>
+  <message>
+   <source>steps of the heating</source>
+   <translation>Schritte des Erwärmens</translation>
+  </message>
+  <message>
+   <source>Output masks</source>
+   <translation>Maskenformate</translation>
+  </message>
+  <message>
+   <source>mask formats: gds, oas, dxf (R2000, for CAD), r12.dxf (for the writer, um), cif</source>
+   <translation>Maskenformate: gds, oas, dxf (R2000, für CAD), r12.dxf (für den Schreiber, µm), cif</translation>
+  </message>
+  <message>
+   <source>Output pictures</source>
+   <translation>Bilder</translation>
+  </message>
+  <message>
+   <source>pictures of the masks, mask/*.png</source>
+   <translation>Bilder der Masken, mask/*.png</translation>
+  </message>
+  <message>
+   <source>Output overlay x</source>
+   <translation>Überlagerung x</translation>
+  </message>
+  <message>
+   <source>shift of the top plate in the picture overlay.png</source>
+   <translation>Versatz der oberen Platte im Bild overlay.png</translation>
+  </message>
+  <message>
+   <source>Output overlay y</source>
+   <translation>Überlagerung y</translation>
+  </message>
+  <message>
+   <source>the same along y</source>
+   <translation>dasselbe längs y</translation>
+  </message>
+  <message>
+   <source>Output writer</source>
+   <translation>Laserschreiber</translation>
+  </message>
+  <message>
+   <source>smallest line and land of the laser writer's mode</source>
+   <translation>kleinste Linie und kleinster Steg im Modus des Laserschreibers</translation>
+  </message>
+  <message>
+   <source>Output freecad</source>
+   <translation>FreeCAD-Dokument</translation>
+  </message>
+  <message>
+   <source>write the FreeCAD document cad/cell.FCStd (needs freecadcmd)</source>
+   <translation>das FreeCAD-Dokument cad/cell.FCStd schreiben (braucht freecadcmd)</translation>
+  </message>
+  <message>
+   <source>Output step domains</source>
+   <translation>Domänen als Körper</translation>
+  </message>
+  <message>
+   <source>domains whose channels become solids; default: the most central</source>
+   <translation>Domänen, deren Kanäle Körper werden; Standard: die mittlere</translation>
+  </message>
+  <message>
+   <source>Output step</source>
+   <translation>STEP-Umfang</translation>
+  </message>
+  <message>
+   <source>channel solids in cad/channels_*.step: those of step_domains, or all (some 200 MB a plate of 20 mm)</source>
+   <translation>Kanalkörper in cad/channels_*.step: die von step_domains oder alle (etwa 200 MB je Platte von 20 mm)</translation>
+  </message>
+  <message>
+   <source>Output step instances</source>
+   <translation>STEP-Instanzen</translation>
+  </message>
+  <message>
+   <source>how channels of one length share a solid: mapped items, or assembly components (3 times larger) for programs that lose mapped items</source>
+   <translation>wie sich Kanäle gleicher Länge einen Körper teilen: als mapped items oder als Baugruppenteile (dreimal größer) für Programme, die mapped items verlieren</translation>
+  </message>
+  <message>
+   <source>Output step gzip</source>
+   <translation>STEP komprimieren</translation>
+  </message>
+  <message>
+   <source>compress cad/channels_*.step to .step.gz</source>
+   <translation>cad/channels_*.step zu .step.gz komprimieren</translation>
+  </message>
+ </context>
+ <context>
+  <name>LceMoldPreferences</name>
+  <message>
+   <source>General</source>
+   <translation>Allgemein</translation>
+  </message>
+  <message>
+   <source>Files</source>
+   <translation>Dateien</translation>
+  </message>
+  <message>
+   <source>Folder for outputs</source>
+   <translation>Ordner für Ausgaben</translation>
+  </message>
+  <message>
+   <source>Masks, exports and reviews go below this folder; empty: beside the document</source>
+   <translation>Masken, Exporte und Prüfungen kommen in diesen Ordner; leer: neben das Dokument</translation>
+  </message>
+  <message>
+   <source>Panels</source>
+   <translation>Eingabefelder</translation>
+  </message>
+  <message>
+   <source>Start a new cell with the values of last time</source>
+   <translation>Eine neue Zelle mit den Werten vom letzten Mal beginnen</translation>
+  </message>
+ </context>
+</TS>
