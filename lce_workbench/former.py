@@ -10,7 +10,6 @@ from typing import Any
 from lce_solver.bounded import retwisted
 from lce_solver.design import renewed
 from lce_solver.errors import InputError
-from lce_solver.judge import directors
 from lce_solver.twist import second_form
 from lce_solver.types import Design, Finding
 from lce_workbench.core import jobfile
@@ -41,8 +40,7 @@ def retwist(job: Job, inputs: Sequence[Mapping[str, Any]], former: Path) -> tupl
         msg = f"a mesh or curve of the job is not the one that {former} was made from; design without --metric"
         raise InputError(msg)
     form = second_form(plan.surface, plan.uv)
-    if jobfile.load(former / "job.toml").prediction.correct != "off":  # which turned the director for its own film
-        plan = replace(plan, theta=directors(plan.surface, plan.uv, plan.material))
+    plan = replace(plan, theta=plan.flattening.theta)  # before it was corrected for its own film
     plan = retwisted(plan, form, **job.sheet.twist)
     kept = [as_finding(record) for record in manifest["findings"] if record["stage"] == "design"]
     kept = [finding for finding in kept if not finding.check.startswith(ANEW)]

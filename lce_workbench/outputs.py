@@ -259,6 +259,7 @@ def write_design(design: Design, path: Path, more: Mapping[str, Any] = MappingPr
         thickness=design.thickness,
         material_source=design.material.source,
         bending_left=design.bending_left,
+        metric_theta=design.flattening.theta,
         status=design.flattening.status.name,
         energy=design.flattening.energy,
         iterations=design.flattening.iterations,
@@ -318,7 +319,7 @@ def read_arrays(path: Path, make: Callable[[Mapping[str, Any]], Made]) -> Made:
 def _design(data: Mapping[str, Any]) -> Design:
     flat = Flattening(
         uv=data["uv"],
-        theta=data["theta"],
+        theta=data["metric_theta"],
         status=Status[str(data["status"])],
         energy=data["energy"],
         iterations=int(data["iterations"]),

@@ -86,7 +86,7 @@ def design(
         stretch=judge.stretches(target, uv, material),
         material=material,
         thickness=thickness,
-        flattening=flat,
+        flattening=replace(flat, uv=uv, theta=theta),
         bending_left=bending_left(form, theta, material, face_areas(target)),
         starts=competed,
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from lce_solver.types import Floats, Ints, Material, Surface, line_angle
+from lce_solver.types import Floats, Ints, Material, Surface
 
 
 def jacobians(surface: Surface, uv: Floats) -> Floats:
@@ -26,13 +26,6 @@ def principal(jacobian: Floats, material: Material) -> Floats:
     """(n_f, 2) singular values of ``jacobian`` (n_f, 3, 2), along and across the director."""
     large_first = np.asarray(np.linalg.svd(jacobian, compute_uv=False), dtype=np.float64)
     return large_first if material.along > material.across else large_first[:, ::-1]
-
-
-def directors(surface: Surface, uv: Floats, material: Material) -> Floats:
-    """(n_f,) direction in the sheet that the map stretches by ``material.along``, modulo pi [rad]."""
-    rows = np.linalg.svd(jacobians(surface, uv))[2]
-    along = rows[:, 0] if material.along > material.across else rows[:, 1]
-    return line_angle(np.arctan2(along[:, 1], along[:, 0]))
 
 
 def stretch_errors(stretch: Floats, material: Material) -> Floats:
