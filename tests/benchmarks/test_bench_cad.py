@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from cad.readers import valid, volume
+from cad.sweep import swept
 from OCP.TopLoc import TopLoc_Location
 from sheets import SPEC, b20
 
@@ -93,6 +94,13 @@ def test_comb(benchmark, channels):
     benchmark.extra_info["holes"] = len(rings)
     assert valid(shape.wrapped)
     assert shape.Volume() == pytest.approx(comb.volume, rel=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(8, 48))
+def test_a_random_job(benchmark, seed, tmp_path):
+    """Forty more cells of random jobs; see tests/cad/test_sweep.py for eight."""
+    found = benchmark.pedantic(swept, (seed, tmp_path), rounds=1)
+    assert [f.message for f in found if f.severity.value == "error"] == []
 
 
 def test_holes_cost_in_proportion(benchmark, channels, tmp_path):
