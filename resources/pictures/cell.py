@@ -35,7 +35,7 @@ APART = {"bottom": -8.0, "spacer": -2.5, "glue": -2.5, "sheet": 0.0, "top": 8.0,
 
 def surface(stack, lift=0.0):
     points, triangles = triangulated(stack)
-    points = points + (0, 0, lift)
+    points = points + np.array([0.0, 0.0, lift])
     data, at, cells = vtkPolyData(), vtkPoints(), vtkCellArray()
     at.SetData(numpy_to_vtk(points, deep=True))
     rows = np.insert(triangles, 0, 3, axis=1).ravel().astype(np.int64)
