@@ -9,7 +9,7 @@ from lce_workbench.outputs import staged, write_manifest
 
 
 def test_a_disk_that_fills_in_the_middle_of_the_channels_leaves_the_former_files(tmp_path, monkeypatch):
-    monkeypatch.setattr(step, "FILES", {})
+    monkeypatch.setattr(step, "files", lambda job: {})
     out, name = tmp_path / "out", "channels_bottom.step"
     with staged(out) as folder:
         (folder / name).write_text("former")

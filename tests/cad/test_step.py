@@ -97,7 +97,8 @@ def test_the_same_bytes_in_another_second_and_another_process(written, tmp_path)
 
 
 def test_progress_names_every_file(sample, tmp_path, monkeypatch):
-    monkeypatch.setattr("lce_workbench.cad.step.FILES", {"spacer.step": FILES["spacer.step"], "cell.glb": list_spacer})
+    chosen = {"spacer.step": FILES["spacer.step"], "cell.glb": list_spacer}
+    monkeypatch.setattr("lce_workbench.cad.step.files", lambda job: chosen)
     told = []
     write_cad(sample, solids(), job(), tmp_path, lambda stage, fraction: told.append((stage, fraction)))
     assert told == [
@@ -115,7 +116,7 @@ def list_spacer(cell):
 @pytest.mark.parametrize("name", ["x.step", "x.glb"])
 @pytest.mark.parametrize("full", [True, False], ids=["full disk", "no folder"])
 def test_what_cannot_be_written_is_an_environment_fault(sample, tmp_path, monkeypatch, name, full):
-    monkeypatch.setattr("lce_workbench.cad.step.FILES", {name: list_spacer})
+    monkeypatch.setattr("lce_workbench.cad.step.files", lambda job: {name: list_spacer})
     if full:
         (tmp_path / "out").mkdir()
         (tmp_path / "out" / name).symlink_to("/dev/full")
