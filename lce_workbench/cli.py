@@ -21,7 +21,9 @@ from lce_solver.types import Progress, silent
 from lce_workbench import ROOT, __version__, pipeline
 from lce_workbench.core import align, feasibility, jobfile
 from lce_workbench.core.job import Job, Target
+from lce_workbench.core.perturb import STUDIES
 from lce_workbench.outputs import has_error, read_manifest, told
+from lce_workbench.studies import SAMPLES, estimate, study
 
 DEMO = ROOT / "templates" / "demo.toml"
 
@@ -126,6 +128,16 @@ def _parser() -> Parser:
         sub.add_argument("folder", type=Path, metavar="DIR")
         if name == "mask":
             _scheduler(sub)
+    studied = command(
+        "study",
+        _study,
+        "Simulates the heating many times, with faults of film, plates or material: into DIR/studies. "
+        + " ".join(f"{name}: {one.question}" for name, one in STUDIES.items()),
+    )
+    studied.add_argument("name", choices=STUDIES, metavar="NAME", help=", ".join(STUDIES))
+    studied.add_argument("folder", type=Path, metavar="DIR")
+    studied.add_argument("--samples", type=int, default=SAMPLES, metavar="N", help=f"default {SAMPLES}")
+    _scheduler(studied)
     checked = command("verify", _verify, "Reads the written files back and compares them with the design.")
     checked.add_argument("folder", type=Path, metavar="DIR")
     tried = command(
@@ -149,7 +161,7 @@ def _scheduler(sub: argparse.ArgumentParser) -> None:
     sub.add_argument(
         "--scheduler",
         metavar="ADDRESS",
-        help="Dask scheduler whose workers write and check the masks: the same bytes; they need the same folders",
+        help="Dask scheduler whose workers do the work (masks, samples): the same bytes; they need the same folders",
     )
 
 
@@ -194,6 +206,22 @@ def _tell(args: argparse.Namespace, out: Path, names: list[str], code: int) -> N
             print(f"{record['severity']}: {record['message']}", file=sys.stderr)
     if not quiet:
         print(f"{', '.join(names)} written to {out}", file=sys.stderr)
+
+
+def _study(args: argparse.Namespace) -> int:
+    quiet = getattr(args, "quiet", False) or getattr(args, "json", False)
+    if not quiet:
+        print(f"study {args.name}: {estimate(args.folder, args.samples)}", file=sys.stderr)
+    progress, close = _progress(args)
+    try:
+        found = study(args.folder, args.name, args.samples, scheduler=args.scheduler, progress=progress)
+    finally:
+        close()
+    if getattr(args, "json", False):
+        print(json.dumps(asdict(found)))
+    elif not quiet:
+        print(f"{found.message}\n{args.folder / 'studies' / args.name}.csv, .json and .png written", file=sys.stderr)
+    return 0
 
 
 def _verify(args: argparse.Namespace) -> int:

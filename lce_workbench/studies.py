@@ -31,6 +31,7 @@ from lce_workbench.outputs import (
 from lce_workbench.pipeline import fabricable
 
 Row = dict[str, Any]
+
 SECONDS = 1.5
 """Of a processor for a sample of 1000 triangles, about; the time grows in proportion."""
 SAMPLES = 40
@@ -39,7 +40,7 @@ SAMPLES = 40
 def study(
     out: Path, name: str, samples: int = SAMPLES, *, scheduler: str | None = None, progress: Progress = silent
 ) -> Finding:
-    """Study the design of the output folder ``out``: `studies/NAME.csv`, `.json` and `.svg` in it.
+    """Study the design of the output folder ``out``: `studies/NAME.csv`, `.json` and `.png` in it.
 
     Parameters
     ----------

@@ -23,9 +23,9 @@ def shared_area(polygons: Floats, others: Floats) -> Floats:
 
 
 def _left_of(polygons: Floats, start: Floats, end: Floats) -> Floats:
-    """What of the polygons (n, k, 2) lies left of lines from ``start`` to ``end`` (n, 2): (n, k + 1, 2), corners repeat.
+    """What of the polygons (n, k, 2) lies left of the lines from ``start`` to ``end`` (n, 2): (n, k + 1, 2).
 
-    Nothing is a polygon of one point.
+    Corners repeat; nothing is a polygon of one point.
     """
     along, local = end - start, polygons - start[:, None]
     height = along[:, :1] * local[..., 1] - along[:, 1:] * local[..., 0]

@@ -108,7 +108,7 @@ def seen_by_triangles(design: Design, domains: Domains) -> Ints:
 def as_made(design: Design, domains: Domains) -> Design:
     """The design with the director and the twist that its triangles get from the domains: what the molds make."""
     if np.array_equal(domains.polygons, design.surface.faces):
-        return design
+        return replace(design, theta=domains.theta, dtheta=domains.dtheta)
     which = seen_by_triangles(design, domains)
     line = np.exp(2j * domains.theta)[which].mean(axis=1)
     return replace(design, theta=line_angle(np.angle(line) / 2), dtheta=domains.dtheta[which].mean(axis=1))

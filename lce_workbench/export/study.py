@@ -43,29 +43,31 @@ def write_summary(name: str, rows: Sequence[Row], table: Sequence[Row], path: Pa
 def write_plot(name: str, rows: Sequence[Row], table: Sequence[Row], path: Path) -> None:
     """Draw the distance from the target of every sample over the values, and the share that arrives."""
     from matplotlib.figure import Figure
+    from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
 
     study = STUDIES[name]
-    figure = Figure(figsize=(7, 4.5), dpi=150, layout="constrained")
+    figure = Figure(figsize=(7, 5), dpi=150, layout="constrained")
     axes = figure.subplots()
-    place = np.array([row["sample"] % len(study.values) for row in rows])
-    turn = np.array([row["sample"] // len(study.values) for row in rows])
+    place, turn = np.array([divmod(row["sample"], len(study.values))[::-1] for row in rows]).T
     x = place + 0.5 * ((turn + 0.5) / (turn.max() + 1) - 0.5)
-    rms = np.array([row["rms_pct"] for row in rows])
-    kinds = np.array([outcome(row) for row in rows])
+    rms, kinds = np.array([row["rms_pct"] for row in rows]), np.array([outcome(row) for row in rows])
     for kind, (colour, mark) in OUTCOMES.items():
         own = kinds == kind
-        axes.plot(x[own], rms[own], mark, color=colour, ms=4, label=f"{kind}: {own.sum()}", clip_on=False)
-    axes.plot(range(len(table)), [row["rms_pct_median"] for row in table], "_", color="black", ms=22, label="median")
-    axes.axhline(REACH, color="grey", lw=0.8, ls="--")
-    axes.text(0, REACH, f"{REACH:g} %: counts as reached", color="grey", va="bottom", fontsize=8)
+        axes.plot(x[own], rms[own], mark, color=colour, ms=4, label=f"{kind}: {own.sum()}")
+    axes.plot(range(len(table)), [row["rms_pct_median"] for row in table], "_", color="black", ms=24)
+    axes.axhline(REACH, color="grey", lw=0.8, ls="--", label=f"limit, {REACH:g} %")
     labels = [
-        "\n".join([", ".join(f"{v:g}" for v in value.values()), f"{row['reached']:.0%} arrive"])
+        f"{', '.join(f'{v:g}' for v in value.values())}\n{row['reached']:.0%} arrive"
         for value, row in zip(study.values, table, strict=True)
     ]
     axes.set_xticks(range(len(table)), labels, fontsize=8)
-    axes.set(yscale="log", xlabel=study.axis, ylabel="rms distance from the target [% of its diagonal]")
-    axes.set_title("\n".join([study.question, "simulated"]), fontsize=9)
-    axes.legend(fontsize=8)
+    axes.set(yscale="log", ylim=(min(rms.min(), REACH) / 2, 2 * max(rms.max(), REACH)))
+    axes.set(xlabel=study.axis, ylabel="rms distance from the target [% of its diagonal]")
+    axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes.yaxis.set_major_formatter(FormatStrFormatter("%g"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    axes.set_title(f"{study.question}\nSimulated; a mark for each sample, a bar for the median", fontsize=8)
+    figure.legend(loc="outside lower center", ncols=4, fontsize=8)
     figure.savefig(path, metadata={"Software": None})
 
 
