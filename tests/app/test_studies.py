@@ -25,6 +25,7 @@ gap_um = 20
 [domains]
 size_um = 400.0
 [prediction]
+correct = "off"
 steps = 2
 [output]
 masks = ["gds"]
@@ -107,14 +108,14 @@ def test_an_interrupted_study_leaves_the_folder_as_it_was(designed, monkeypatch)
 def test_a_killed_worker_loses_nothing(designed):
     """200 samples on two workers, one killed in the middle: every number as without workers, to the last bit."""
     plan, domains = read_design(designed / "design.npz"), read_domains(designed / "design.npz")
-    common = plan, domains, PredictionSpec(steps=2)
-    alone = list(computed(common, "director_noise", 200))
+    common = plan, domains, PredictionSpec(steps=1)
+    alone = list(computed(common, "misalignment", 200))
     rows, victims = [], []
     with (
         LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster,
         Client(cluster, set_as_default=False) as watcher,
     ):
-        for row in computed(common, "director_noise", 200, cluster.scheduler_address):
+        for row in computed(common, "misalignment", 200, cluster.scheduler_address):
             rows.append(row)
             if len(rows) == 60:
                 victims = [min(watcher.run(os.getpid).values())]
