@@ -314,22 +314,39 @@ def _json_line(stage: str, fraction: float) -> None:
         print(json.dumps({"stage": stage, "fraction": round(fraction, 4)}), flush=True)
 
 
+SOON = 3.0
+"""What is left of a stage is not told before so many seconds of it."""
+
+
 class Bar:
     """Progress on stderr: a bar on a terminal, else one line a stage."""
 
     def __init__(self) -> None:
         self.stage, self.began, self.terminal = "", time.monotonic(), sys.stderr.isatty()
+        self.entered, self.first, self.last = self.began, 0.0, 0.0
 
     def __call__(self, stage: str, fraction: float) -> None:
-        seconds = time.monotonic() - self.began
+        now = time.monotonic()
+        seconds = now - self.began
+        if stage != self.stage or fraction < self.last:
+            self.entered, self.first = now, fraction
+        self.last = fraction
         if self.terminal:
             full = round(30 * min(max(fraction, 0.0), 1.0))
             print(
-                f"\r\x1b[K{'#' * full}{'.' * (30 - full)} {stage} {seconds:.0f} s", end="", file=sys.stderr, flush=True
+                f"\r\x1b[K{'#' * full}{'.' * (30 - full)} {stage} {seconds:.0f} s{self._left(now)}",
+                end="",
+                file=sys.stderr,
+                flush=True,
             )
         elif stage != self.stage:
             print(f"{seconds:6.1f} s  {stage}", file=sys.stderr, flush=True)
         self.stage = stage
+
+    def _left(self, now: float) -> str:
+        """How long the stage may still take, if it goes on as it did; nothing in its first seconds."""
+        done, spent = self.last - self.first, now - self.entered
+        return f", about {(1 - self.last) * spent / done:.0f} s left" if spent > SOON and done > 0 else ""
 
     def close(self) -> None:
         """Leave the terminal's line clean."""

@@ -24,7 +24,7 @@ from lce_solver.design import design, renewed
 from lce_solver.errors import EnvironmentFault, InputError, LceError, SolverError
 from lce_solver.shell import film_of, predict, settle
 from lce_solver.types import Design, Finding, Progress, Severity, silent
-from lce_workbench import ROOT, __version__
+from lce_workbench import ROOT, __version__, checkpoint
 from lce_workbench.cad.step import EXTRAS, told
 from lce_workbench.cluster import client, each
 from lce_workbench.core import align, jobfile, material, target
@@ -43,6 +43,7 @@ from lce_workbench.core.sampling import as_made
 from lce_workbench.core.units import UM
 from lce_workbench.divided import arrays, read_domains
 from lce_workbench.export import EXPORTERS
+from lce_workbench.export.film import write_film
 from lce_workbench.export.outlines import OUTLINES
 from lce_workbench.export.pictures import write_pictures
 from lce_workbench.export.table import write_table
@@ -63,6 +64,9 @@ from lce_workbench.plates import Sheet, expose, measure
 
 Findings = tuple[Finding, ...]
 
+FILM = "prediction_film.glb"
+"""The heating as an animation."""
+
 
 @dataclass(frozen=True)
 class Run:
@@ -77,6 +81,8 @@ class Run:
     """Output folder whose flat sheet and director are taken, or `None`: they are solved."""
     scheduler: str | None = None
     """Address of the Dask scheduler whose workers draw the masks, or `None`: this process does."""
+    out: Path | None = None
+    """The output folder itself, if ``folder`` is to take its place."""
 
 
 def build(
@@ -114,7 +120,7 @@ def build(
         for name in names:
             if name == "review":  # it reads the manifest, as whoever gets the folder does
                 _write(folder, stages, records, former.get("inputs") or inputs(job, base))
-            findings = STAGES[name](Run(folder, job, base, progress, metric, scheduler))
+            findings = STAGES[name](Run(folder, job, base, progress, metric, scheduler, out))
             records += [as_record(finding, name) for finding in findings]
             stages.append(name)
         _write(folder, stages, records, former.get("inputs") or inputs(job, base))
@@ -211,9 +217,13 @@ def run_predict(run: Run) -> Findings:
     """Heat the sheet and compare it with the target: `prediction.npz`, `prediction.json`."""
     plan, spec = fabricable(read_design(run.folder / "design.npz")), run.job.prediction
     film = film_of(as_made(plan, read_domains(run.folder / "design.npz")))
-    found = predict(film, seed=spec.seed, imperfection=spec.imperfection, steps=spec.steps, progress=run.progress)
-    judged = compare(plan, found, settle(film, plan.surface.vertices, progress=run.progress))
+    how = {"seed": spec.seed, "imperfection": spec.imperfection, "steps": spec.steps}
+    with checkpoint.resumed(checkpoint.place(run.out or run.folder), checkpoint.key(film, spec)) as (former, keep):
+        found = predict(film, **how, progress=run.progress, former=former, keep=keep)
+        judged = compare(plan, found, settle(film, plan.surface.vertices, progress=run.progress))
     write_prediction(found, judged, run.folder)
+    if spec.film:
+        write_film(film.sheet.uv, film.sheet.faces, found.frames, run.folder / FILM)
     return (predicted(judged),)
 
 
@@ -429,7 +439,7 @@ STAGES: dict[str, Callable[[Run], Findings]] = {
 
 OUTPUTS = {
     "design": (),
-    "predict": ("prediction.npz", "prediction.json"),
+    "predict": ("prediction.npz", "prediction.json", FILM),
     "mask": ("mask",),
     "cad": ("cad",),
     "drawings": ("drawings",),

@@ -260,6 +260,7 @@ class PredictionSpec:
     seed: int = param(1, "seed of the imperfection that the sheet starts with", low=0, high=2**31 - 1)
     imperfection: float = param(0.02, "deviation of that imperfection, in thicknesses", low=0.0, high=1.0)
     steps: int = param(10, "steps of the heating", low=1, high=1000)
+    film: bool = param(False, "write the heating as an animation, prediction_film.glb")
 
 
 @dataclass(frozen=True)

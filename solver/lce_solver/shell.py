@@ -89,6 +89,8 @@ def predict(
     steps: int = STEPS,
     tolerance: float = SETTLED,
     progress: Progress = silent,
+    former: Heated | None = None,
+    keep: Callable[[Heated], None] = lambda _: None,
 ) -> Prediction:
     """Heat the flat film from lambda = 1 to its material's, and return the shape that it takes.
 
@@ -98,12 +100,14 @@ def predict(
     steps : of the heating, denser at its start.
     tolerance : energy that a further iteration may still save, in units of Young's modulus x thickness^3 / 12.
     progress : called before every iteration.
+    former, keep : as for `heat`.
     """
     uv = flat.sheet.uv
     height = imperfection * flat.thickness * np.random.default_rng(seed).standard_normal(len(uv))
     shares = (np.arange(1, steps + 1) / steps) ** ONSET
     tolerances = np.append(PASSING * shares[:-1] ** 2, tolerance)
-    return heat(flat, np.column_stack([uv, height]), flat.material.lambda_**shares, tolerances, progress=progress)
+    start, lambdas = np.column_stack([uv, height]), flat.material.lambda_**shares
+    return heat(flat, start, lambdas, tolerances, progress=progress, former=former, keep=keep)
 
 
 def settle(flat: Film, start: Floats, *, tolerance: float = SETTLED, progress: Progress = silent) -> Prediction:
@@ -111,21 +115,43 @@ def settle(flat: Film, start: Floats, *, tolerance: float = SETTLED, progress: P
     return heat(flat, start, np.array([flat.material.lambda_]), np.array([tolerance]), progress=progress)
 
 
-def heat(flat: Film, start: Floats, lambdas: Floats, tolerances: Floats, *, progress: Progress = silent) -> Prediction:
-    """Follow the equilibrium from ``start`` (n_v, 3) [mm] through ``lambdas`` (k,), each to its tolerance (k,)."""
-    before = now = np.array(start, dtype=np.float64)
-    history, frames = [], []
-    for step, (lambda_, tolerance) in enumerate(zip(lambdas, tolerances, strict=True)):
-        aim, done = flat.at(float(lambda_)), step / len(lambdas)
+@dataclass(frozen=True, eq=False)
+class Heated:
+    """What is done of a heating: all that the next step depends on."""
+
+    history: tuple[HeatingStep, ...] = ()
+    frames: tuple[Floats, ...] = ()
+    """(n_v, 3) the shape after each step [mm]."""
+
+
+def heat(
+    flat: Film,
+    start: Floats,
+    lambdas: Floats,
+    tolerances: Floats,
+    *,
+    progress: Progress = silent,
+    former: Heated | None = None,
+    keep: Callable[[Heated], None] = lambda _: None,
+) -> Prediction:
+    """Follow the equilibrium from ``start`` (n_v, 3) [mm] through ``lambdas`` (k,), each to its tolerance (k,).
+
+    ``keep`` is given what is done after each step; as ``former`` of a later call with the same arguments it is not done
+    again, and the result is the same to the last bit.
+    """
+    done = former or Heated()
+    for step in range(len(done.frames), len(lambdas)):
+        before, now = (start, start, *done.frames)[-2:]
+        aim = flat.at(float(lambdas[step]))
         ahead = _extrapolate(flat.sheet, aim, before, now)
-        found = relax(flat, aim, ahead, tolerance, watch=partial(progress, "heating", done))
-        before, now = now, found.x
-        history.append(HeatingStep(float(lambda_), *parts(flat.sheet, aim, now), found.iterations, found.status))
-        frames.append(now)
+        found = relax(flat, aim, ahead, tolerances[step], watch=partial(progress, "heating", step / len(lambdas)))
+        told = HeatingStep(float(lambdas[step]), *parts(flat.sheet, aim, found.x), found.iterations, found.status)
+        done = Heated((*done.history, told), (*done.frames, found.x))
+        keep(done)
     progress("heating", 1.0)
-    strain = residual_strain(flat.sheet, aim, now)
-    last = history[-1]
-    return Prediction(now, last.stretching, last.bending, strain, last.status, tuple(history), np.array(frames))
+    last, shape = done.history[-1], done.frames[-1]
+    strain = residual_strain(flat.sheet, flat.at(float(lambdas[-1])), shape)
+    return Prediction(shape, last.stretching, last.bending, strain, last.status, done.history, np.array(done.frames))
 
 
 def _extrapolate(sheet: Shell, aim: Reference, before: Floats, now: Floats) -> Floats:
