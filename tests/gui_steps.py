@@ -1,6 +1,7 @@
 """What the tests of the window do inside FreeCAD."""
 
 import hashlib
+import re
 import time
 from pathlib import Path
 
@@ -115,7 +116,7 @@ def fingerprint(doc):
                 value = [value.Volume, value.BoundBox.XMin, value.BoundBox.ZMax, len(value.Faces)]
             elif name == "File":
                 value = value and hashlib.sha256(Path(value).read_bytes()).hexdigest()
-            found[f"{obj.Name}.{name}"] = str(value)
+            found[f"{obj.Name}.{name}"] = re.sub(r" at 0x[0-9a-f]+", "", str(value))
     return found
 
 
@@ -331,3 +332,80 @@ def german(_=""):
     found = {"tip": widget("sheet.gap_um").toolTip(), "stop": widget("stop").text()}
     press("Cancel")
     return {**found, "commands": described()}
+
+
+def shown(mesh, pictures):
+    """A session for the documentation: a picture of each step."""
+    import tempfile
+
+    import FreeCAD
+    import FreeCADGui
+    import Mesh
+
+    window = FreeCADGui.getMainWindow()
+    window.setGeometry(0, 0, 1400, 900)
+    activate()
+    from lce_workbench.gui.qt import QtWidgets
+
+    for dock in window.findChildren(QtWidgets.QDockWidget):
+        if dock.objectName() in {"Report view", "Python console"}:
+            dock.hide()
+    with tempfile.TemporaryDirectory() as folder:
+        doc = FreeCAD.newDocument("Cell")
+        Mesh.insert(mesh, doc.Name)
+        source = doc.Objects[0]
+        view = FreeCADGui.activeDocument().activeView()
+        view.viewIsometric()
+        FreeCADGui.SendMsgToActiveView("ViewFit")
+        FreeCADGui.Selection.addSelection(source)
+        for number, (name, fill) in enumerate(
+            {
+                "NewCell": {"sheet.width_mm": "6 mm"},
+                "Design": {},
+                "Predict": {},
+                "Plates": {},
+                "ChannelWindow": {"output.step_domains": "20, 21, 22, 23"},
+                "Mask": {"folder": folder},
+            }.items(),
+            start=1,
+        ):
+            run(name)
+            for field, text in fill.items():
+                write(field, text)
+            picture(pictures, f"{number}_{name}")
+            press("Ok")
+            if name == "Design":
+                pump(4)
+                picture(pictures, f"{number}_{name}_running")
+            until(lambda: not is_open())
+            FreeCADGui.Selection.clearSelection()
+            if name == "Plates":
+                source.ViewObject.Visibility = False
+                view.viewIsometric()
+                FreeCADGui.SendMsgToActiveView("ViewFit")
+        doc.SheetParameters.Gap = "150 um"
+        doc.recompute()
+        expand(window)
+        picture(pictures, "7_stale")
+        run("Drawings")
+        pump(3)
+        FreeCADGui.runCommand("Std_ViewFitAll", 0)
+        picture(pictures, "8_drawings")
+
+
+def expand(window):
+    """Unfold what the cell is made from, but for its axes."""
+    from lce_workbench.gui.qt import QtWidgets
+
+    for tree in window.findChildren(QtWidgets.QTreeWidget):
+        if tree.isVisible():
+            tree.expandAll()
+            for item in tree.findItems("Origin", anywhere()):
+                item.setExpanded(False)
+
+
+def anywhere():
+    """How a name is looked for in the tree."""
+    from lce_workbench.gui.qt import QtCore
+
+    return QtCore.Qt.MatchExactly | QtCore.Qt.MatchRecursive

@@ -19,7 +19,7 @@ from lce_workbench.app.objects import FILES
 from lce_workbench.app.results import CURRENT, difference
 from lce_workbench.core import jobfile
 from lce_workbench.core.job import Job
-from lce_workbench.outputs import told
+from lce_workbench.outputs import read_manifest, told
 
 Planned = Callable[[Path, Path, tuple[str, ...]], tuple[tuple[str, ...], ...]]
 """From job file, output folder and the words that name the metric to the commands."""
@@ -53,11 +53,17 @@ def export(cell: Any, job: Job, folder: Path) -> Work:
 def review(cell: Any, job: Job, folder: Path) -> Work:
     """Write all outputs below ``folder``, unless they are there, and review them."""
     require_current(cell, job)
-    return _work("review", cell, job, folder, _built)
+    return _work("review", cell, job, folder, _reviewed)
 
 
 def _built(toml: Path, out: Path, metric: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
     return (("build", str(toml), "--out", str(out), *metric),)
+
+
+def _reviewed(toml: Path, out: Path, metric: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
+    """The review alone where everything is written already; a build ends with one."""
+    whole = is_of(toml, out) and "cad" in read_manifest(out)["stages"]
+    return (("review", str(out)),) if whole else _built(toml, out, metric)
 
 
 def _designed(toml: Path, out: Path, metric: tuple[str, ...]) -> tuple[str, ...]:
@@ -66,10 +72,13 @@ def _designed(toml: Path, out: Path, metric: tuple[str, ...]) -> tuple[str, ...]
 
 def _after_design(toml: Path, out: Path, metric: tuple[str, ...], stage: str) -> tuple[tuple[str, ...], ...]:
     """One stage, after a design if ``out`` is not of this job."""
-    job = jobfile.load(toml)
-    there = out / "job.toml"
-    same = there.is_file() and there.read_text(encoding="utf-8") == jobfile.dump(_seen_from(job, toml.parent, out))
-    return (*(() if same else (_designed(toml, out, metric),)), (stage, str(out)))
+    return (*(() if is_of(toml, out) else (_designed(toml, out, metric),)), (stage, str(out)))
+
+
+def is_of(toml: Path, out: Path) -> bool:
+    """Whether ``out`` was made from a job file, as it is now."""
+    there, job = out / "job.toml", jobfile.load(toml)
+    return there.is_file() and there.read_text(encoding="utf-8") == jobfile.dump(_seen_from(job, toml.parent, out))
 
 
 def _seen_from(job: Job, base: Path, folder: Path) -> Job:

@@ -58,7 +58,10 @@ class StepCommand:
         cell = cells.the_cell(FreeCAD.ActiveDocument, FreeCADGui.Selection.getSelection())
         if self.step.panel:
             return show(self.step, cell.Document, cell)
-        return once(cell.Document, self.step.title, f"session.{self.step.call}({path(cell)})")
+        once(cell.Document, self.step.title, f"session.{self.step.call}({path(cell)})")
+        for page in cell.Document.findObjects("TechDraw::DrawPage")[:1]:
+            page.ViewObject.doubleClicked()
+        return None
 
 
 class ExampleCommand:

@@ -95,8 +95,8 @@ def test_masks_and_table_are_those_of_the_command_line(done, out, tmp_path):
     main(["mask", str(tmp_path / "other"), "--quiet"])
     files = [p.relative_to(tmp_path / "other") for p in (tmp_path / "other").rglob("*") if p.is_file()]
     assert len(files) > 10
-    for name in set(files) - {"job.toml"}:
-        if name.name not in {"job.toml", "manifest.json"}:
+    for name in files:
+        if name.name == "domains.csv" or name.parent.name == "mask":
             assert (out / "out" / "cell" / name).read_bytes() == (tmp_path / "other" / name).read_bytes(), name
 
 
