@@ -319,7 +319,7 @@ def read_arrays(path: Path, make: Callable[[Mapping[str, Any]], Made]) -> Made:
 def _design(data: Mapping[str, Any]) -> Design:
     flat = Flattening(
         uv=data["uv"],
-        theta=data["metric_theta"],
+        theta=data.get("metric_theta", data["theta"]),  # a design from before corrections has one
         status=Status[str(data["status"])],
         energy=data["energy"],
         iterations=int(data["iterations"]),
