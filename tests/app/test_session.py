@@ -110,7 +110,7 @@ def test_a_document_of_schema_1_opens_works_and_is_saved_anew(tmp_path):
     assert "surface='saddle'" in found["job"]
     assert "width_um=5.0" in found["job"]
     assert "label='A1'" in found["job"]
-    assert found["ratio"] == pytest.approx(2)
+    assert found["ratio"] == pytest.approx(2, rel=1e-4)  # channels are rounded otherwise than they were then
     assert found["invalid"] == []
     assert found["status"] == "current"
     assert found["stale"] == "stale: sheet.width_mm is now 9.0, this was made for 2.2"
