@@ -46,7 +46,7 @@ def resumed(path: Path, name: str) -> Iterator[tuple[Heated | None, Callable[[He
 
     def keep(done: Heated) -> None:
         part = path.with_suffix(".part")
-        steps = [(step.lambda_, step.stretching, step.bending, step.iterations) for step in done.history]
+        steps = [(step.lambda_, step.stretching, step.bending, step.iterations, step.loading) for step in done.history]
         with told(path):
             with part.open("wb") as file:
                 statuses = [step.status.name for step in done.history]
@@ -63,7 +63,7 @@ def _read(path: Path, name: str) -> Heated | None:
             if str(data["key"]) != name:
                 return None
             steps = zip(data["steps"].tolist(), data["statuses"].tolist(), strict=True)
-            history = tuple(HeatingStep(*row[:3], int(row[3]), Status[status]) for row, status in steps)
+            history = tuple(HeatingStep(*row[:3], int(row[3]), Status[status], row[4]) for row, status in steps)
             return Heated(history, tuple(data["frames"]))
     except (OSError, ValueError, KeyError, BadZipFile):
         return None

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from lce_solver.arrive import arrive
-from lce_solver.compare import REACH, Comparison, Verdict, compare
+from lce_solver.compare import REACH, Comparison, Verdict, compare, placed
 from lce_solver.cut import seams
 from lce_solver.design import design, renewed
 from lce_solver.errors import EnvironmentFault, InputError, LceError, SolverError
@@ -41,6 +41,7 @@ from lce_workbench.core.partition import FOLDED, divide
 from lce_workbench.core.replication import replicated
 from lce_workbench.core.sampling import as_made
 from lce_workbench.core.units import UM
+from lce_workbench.core.weight import loaded
 from lce_workbench.divided import arrays, read_domains
 from lce_workbench.export import EXPORTERS
 from lce_workbench.export.film import write_film
@@ -216,11 +217,12 @@ def sheet_findings(job: Job) -> Findings:
 def run_predict(run: Run) -> Findings:
     """Heat the sheet and compare it with the target: `prediction.npz`, `prediction.json`."""
     plan, spec = fabricable(read_design(run.folder / "design.npz")), run.job.prediction
-    film = film_of(as_made(plan, read_domains(run.folder / "design.npz")))
+    film = loaded(film_of(as_made(plan, read_domains(run.folder / "design.npz"))), spec)
     how = {"seed": spec.seed, "imperfection": spec.imperfection, "steps": spec.steps}
     with checkpoint.resumed(checkpoint.place(run.out or run.folder), checkpoint.key(film, spec)) as (former, keep):
         found = predict(film, **how, progress=run.progress, former=former, keep=keep)
-        judged = compare(plan, found, settle(film, plan.surface.vertices, progress=run.progress))
+        start = plan.surface.vertices if film.load is None else placed(plan, found)
+        judged = compare(plan, found, settle(film, start, progress=run.progress))
     write_prediction(found, judged, run.folder)
     if spec.film:
         write_film(film.sheet.uv, film.sheet.faces, found.frames, run.folder / FILM)

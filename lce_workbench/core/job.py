@@ -260,6 +260,13 @@ class PredictionSpec:
     seed: int = param(1, "seed of the imperfection that the sheet starts with", low=0, high=2**31 - 1)
     imperfection: float = param(0.02, "deviation of that imperfection, in thicknesses", low=0.0, high=1.0)
     steps: int = param(10, "steps of the heating", low=1, high=1000)
+    plate: bool = param(
+        False, "the sheet has weight and lies on the hot plate, which it can leave upwards; without friction"
+    )
+    density_kg_m3: float = param(1200.0, "density of the film", unit="kg/m3", above=0.0, high=1e5)
+    modulus_MPa: float = param(
+        1.0, "Young's modulus of the hot film, which resists its weight", unit="MPa", above=0.0, high=1e6
+    )
     film: bool = param(False, "write the heating as an animation, prediction_film.glb")
 
 

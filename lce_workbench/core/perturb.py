@@ -15,6 +15,7 @@ from lce_workbench.core.job import PredictionSpec
 from lce_workbench.core.overlap import shared_area
 from lce_workbench.core.sampling import as_made
 from lce_workbench.core.units import UM
+from lce_workbench.core.weight import loaded
 
 NEAR = 16
 """The domains that share area with a triangle are looked for among so many with the nearest centres."""
@@ -34,7 +35,7 @@ class Bench:
 
 def bench(plan: Design, domains: Domains, spec: PredictionSpec) -> Bench:
     """Prepare the film of a design for the samples of a study."""
-    return Bench(plan, domains, film_of(as_made(plan, domains)), spec)
+    return Bench(plan, domains, loaded(film_of(as_made(plan, domains)), spec), spec)
 
 
 IMPERFECTION = "imperfection"
@@ -62,7 +63,7 @@ def _at_nu(at: Bench, _: np.random.Generator, change: float) -> Film:
 
 
 def _thicker(at: Bench, _: np.random.Generator, percent: float) -> Film:
-    return replace(at.film, thickness=at.film.thickness * (1 + percent / 100))
+    return loaded(replace(at.film, thickness=at.film.thickness * (1 + percent / 100)), at.spec)
 
 
 def _noisy(at: Bench, rng: np.random.Generator, deviation_deg: float) -> Film:

@@ -123,6 +123,12 @@ def compare(
     )
 
 
+def placed(design: Design, found: Prediction) -> Floats:
+    """The target (n_v, 3) moved to where the heated sheet is [mm]: on a plate, a run that starts at it starts there."""
+    target = design.surface.vertices
+    return align(target, found.vertices, vertex_areas(target, design.surface.faces)).moved
+
+
 def _verdict(status: Status, direct: float, mirror: float, apart: float | None, reach: float) -> Verdict:
     if status is not Status.CONVERGED:
         return Verdict.NOT_CONVERGED

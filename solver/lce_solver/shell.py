@@ -14,6 +14,7 @@ import numpy as np
 
 from lce_solver import cholesky
 from lce_solver.errors import InputError
+from lce_solver.load import Load, vertex_areas
 from lce_solver.shell_energy import Reference, energy, parts, reference, residual_strain, stiffness
 from lce_solver.shell_minimise import Minimum, Solve, minimise
 from lce_solver.shell_patch import Shell, shell
@@ -49,6 +50,8 @@ class Film:
     thickness: float
     """As prepared [mm]."""
     ordering: cholesky.Plan
+    load: Load | None = None
+    """Weight and support, or none: then the film floats freely."""
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.thickness) and self.thickness > 0):
@@ -61,6 +64,23 @@ class Film:
         """What the film wants to be when the stretch along the director is ``lambda_``."""
         material = replace(self.material, lambda_=lambda_)
         return reference(self.sheet, self.theta, self.dtheta, material, thickness=self.thickness)
+
+    def energy(self, aim: Reference, x: Floats) -> tuple[float, Floats]:
+        """Energy of shell and load per Young's modulus [mm^3] of ``x`` (n_v, 3) [mm], and its gradient (n_v, 3)."""
+        value, gradient = energy(self.sheet, aim, x)
+        if self.load is None:
+            return value, gradient
+        more, pull = self.load.energy(x)
+        return value + more, gradient + pull
+
+    def stiffness(self, aim: Reference, x: Floats) -> Floats:
+        """Positive semi-definite Hessian of each triangle with its share of the load's, (n_f, 6, 6, 3, 3)."""
+        element = stiffness(self.sheet, aim, x)
+        if self.load is not None:
+            each = (self.load.stiffness(x) / vertex_areas(self.sheet))[self.sheet.faces] * self.sheet.area[:, None] / 3
+            for corner in range(3):
+                element[:, corner, corner, 2, 2] += each[:, corner]
+        return element
 
 
 def film(uv: Floats, faces: Ints, theta: Floats, dtheta: Floats, *, material: Material, thickness: float) -> Film:
@@ -143,21 +163,23 @@ def heat(
     for step in range(len(done.frames), len(lambdas)):
         before, now = (start, start, *done.frames)[-2:]
         aim = flat.at(float(lambdas[step]))
-        ahead = _extrapolate(flat.sheet, aim, before, now)
+        ahead = _extrapolate(flat, aim, before, now)
         found = relax(flat, aim, ahead, tolerances[step], watch=partial(progress, "heating", step / len(lambdas)))
-        told = HeatingStep(float(lambdas[step]), *parts(flat.sheet, aim, found.x), found.iterations, found.status)
+        own, loading = parts(flat.sheet, aim, found.x), flat.load.energy(found.x)[0] if flat.load else 0.0
+        told = HeatingStep(float(lambdas[step]), *own, found.iterations, found.status, loading)
         done = Heated((*done.history, told), (*done.frames, found.x))
         keep(done)
     progress("heating", 1.0)
     last, shape = done.history[-1], done.frames[-1]
     strain = residual_strain(flat.sheet, flat.at(float(lambdas[-1])), shape)
-    return Prediction(shape, last.stretching, last.bending, strain, last.status, done.history, np.array(done.frames))
+    frames = np.array(done.frames)
+    return Prediction(shape, last.stretching, last.bending, strain, last.status, done.history, frames, last.loading)
 
 
-def _extrapolate(sheet: Shell, aim: Reference, before: Floats, now: Floats) -> Floats:
+def _extrapolate(flat: Film, aim: Reference, before: Floats, now: Floats) -> Floats:
     """Go on as in the last step, if that lowers the energy."""
     ahead = 2 * now - before
-    return ahead if energy(sheet, aim, ahead)[0] < energy(sheet, aim, now)[0] else now
+    return ahead if flat.energy(aim, ahead)[0] < flat.energy(aim, now)[0] else now
 
 
 def relax(
@@ -166,14 +188,13 @@ def relax(
     """Minimise the energy against ``aim`` from ``start`` (n_v, 3) [mm]; ``tolerance`` as for `predict`."""
     sheet = flat.sheet
     rigidity = aim.thickness**3 / 12
-    shares = np.bincount(sheet.faces.ravel(), np.repeat(sheet.area / 3, 3), minlength=len(sheet.uv))
-    springs = np.asarray(FOUNDATION * rigidity / sheet.size**4 * shares)
+    springs = FOUNDATION * rigidity / sheet.size**4 * vertex_areas(sheet)
 
     def factorise(x: Floats) -> Solve:
-        return cholesky.factorise(flat.ordering, stiffness(sheet, aim, x), springs)
+        return cholesky.factorise(flat.ordering, flat.stiffness(aim, x), springs)
 
     return minimise(
-        lambda x: energy(sheet, aim, x),
+        lambda x: flat.energy(aim, x),
         factorise,
         start,
         tolerance=tolerance * rigidity,

@@ -248,6 +248,8 @@ class HeatingStep:
     """[mm^3]"""
     iterations: int
     status: Status
+    loading: float = 0.0
+    """Of the weight, and of the support that gives way [mm^3]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -267,6 +269,8 @@ class Prediction:
     history: tuple[HeatingStep, ...]
     frames: Floats
     """(k, n_v, 3) the shape after each step of the heating [mm]; the last is the result."""
+    loading: float = 0.0
+    """Energy of weight and support per Young's modulus [mm^3]."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", owned(self.vertices, "vertices", np.float64, None, 3))
@@ -275,7 +279,7 @@ class Prediction:
     @property
     def energy(self) -> float:
         """Energy per Young's modulus [mm^3]."""
-        return self.stretching + self.bending
+        return self.stretching + self.bending + self.loading
 
     @property
     def iterations(self) -> int:
