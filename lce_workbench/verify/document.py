@@ -32,6 +32,9 @@ with open({answer!r}, "w") as file:
     json.dump(found, file)
 """
 
+BODIES = {"Film": "sheet"}
+"""Bodies whose label is not their part's name: in the document "Sheet" is what holds the sheet's parameters."""
+
 LOOSE = 1e-6
 """FreeCAD's boxes are as wide as the kernel's tolerance [mm]."""
 
@@ -61,7 +64,7 @@ def parts(path: Path) -> list[Part]:
             raise Unreadable(msg)
         rows = json.loads(answer.read_text(encoding="utf-8"))
     return [
-        Part(label.lower().replace(" ", "_"), count, volume, np.array(low), np.array(high), valid)
+        Part(BODIES.get(label, label.lower().replace(" ", "_")), count, volume, np.array(low), np.array(high), valid)
         for label, count, volume, low, high, valid in rows
     ]
 

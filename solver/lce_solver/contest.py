@@ -37,7 +37,7 @@ ROUGH = 1e-6
 """Tolerance until the winner is known: what is left is far below the differences between starts."""
 TIE = 1e-6
 """Scores as close as this are equal (symmetric targets); the smaller angle wins, so that the result is repeatable."""
-FAVOUR = 0.03
+FAVOUR = 0.1
 """A symmetric solution wins over lopsided ones whose score is less than this better."""
 
 
