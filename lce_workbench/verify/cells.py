@@ -12,25 +12,15 @@ import numpy as np
 
 from lce_solver.types import Finding, Floats
 from lce_workbench.verify.finding import Findings, error, guarded, measured, same
+from lce_workbench.verify.goals import STACK, Wanted, wanted
 from lce_workbench.verify.layouts import DAMAGES
 from lce_workbench.verify.masks import Plates
 from lce_workbench.verify.reference import PLATES, Plate, Reference
 from lce_workbench.verify.solids import READABLE, Part, counted, parts
 from lce_workbench.verify.workers import value
 
-STACK = ("land", "epoxy", "glass")
-"""Of a plate, from the film outwards."""
-
-FILES = {
-    "bottom_plate.step": ("bottom_land", "bottom_epoxy", "bottom_glass"),
-    "top_plate.step": ("top_land", "top_epoxy", "top_glass"),
-    "spacer.step": ("spacer_left", "spacer_right"),
-    "cell.step": (
-        *("bottom_glass", "bottom_epoxy", "bottom_land", "spacer_left", "spacer_right"),
-        *("glue_left", "glue_right", "sheet", "top_land", "top_epoxy", "top_glass"),
-    ),
-}
-"""File -> the parts it has to hold; the cell comes last, for what the others hold is not measured twice."""
+PARTS = {f"{plate}_plate.step": tuple(f"{plate}_{layer}" for layer in STACK) for plate in PLATES}
+"""File -> the parts it has to hold."""
 
 SAME = 1e-6
 """Relative difference of volumes."""
@@ -39,61 +29,20 @@ WIDTH = 2.0
 """What rounding to 1 nm changes in a channel's width on the mask [nm]."""
 
 
-@dataclass(frozen=True, eq=False)
-class Wanted:
-    """What a part has to be."""
-
-    z: tuple[float, float]
-    """Lower and upper face [mm]."""
-    box: Floats | None = None
-    """(4,) low x, low y, high x, high y [mm]; None if not known."""
-    volume: float | None = None
-    """[mm3]; None if not known."""
-
-
-def wanted(reference: Reference, masks: Mapping[Plate, Plates]) -> dict[str, Wanted]:
-    """Every part of the cell: heights by the job, outlines by the mask of its plate and by the design."""
-    job, found = reference.job, {}
-    thickness = {"land": job.channels.depth_um / 1e3, "epoxy": job.plates.epoxy_um / 1e3, "glass": job.plates.glass_mm}
-    half = job.sheet.gap_um / 2e3
-    for plate in PLATES:
-        level, glass = half, _outlines(masks.get(plate), "PLATE")
-        for layer in STACK:
-            z = level, level + thickness[layer]
-            level = z[1]
-            area = float(np.prod(glass[0][2:] - glass[0][:2])) if glass else None
-            full = None if area is None or layer == "land" else area * thickness[layer]
-            heights = z if plate == "top" else (-z[1], -z[0])
-            found[f"{plate}_{layer}"] = Wanted(heights, glass[0] if glass else None, full)
-    strips = sorted(_outlines(masks.get("bottom"), "SPACER"), key=lambda box: float(box[0]))
-    for k, side in enumerate(("left", "right")):
-        box = strips[k] if len(strips) == 2 else None
-        volume = None if box is None else float(np.prod(box[2:] - box[:2])) * 2 * half
-        found[f"spacer_{side}"] = Wanted((-half, half), box, volume)
-        found[f"glue_{side}"] = Wanted((-half, half))
-    low, high = reference.flat.min(axis=0), reference.flat.max(axis=0)
-    area = float(_areas(reference).sum())
-    found["sheet"] = Wanted((-half, half), np.concatenate([low, high]), area * 2 * half)
-    return found
-
-
-def _outlines(plate: Plates | None, layer: str) -> list[Floats]:
-    """Boxes of the polygons of a layer [mm]."""
-    polygons = plate.common.get(layer) if plate else None
-    if polygons is None:
-        return []
-    return [np.concatenate([p.min(axis=0), p.max(axis=0)]) * 1e-6 for p in polygons]
-
-
-def _areas(reference: Reference) -> Floats:
-    a, b, c = np.moveaxis(reference.corners, 1, 0)
-    (ux, uy), (vx, vy) = (b - a).T, (c - a).T
-    return np.asarray(np.abs(ux * vy - uy * vx) / 2)
+def files(reference: Reference) -> dict[str, tuple[str, ...]]:
+    """File -> the parts it has to hold; the cell comes last, for what the others hold is not measured twice."""
+    job = reference.job
+    spacer, glue = (tuple(f"{kind}_{side}" for side in ("left", "right")) for kind in ("spacer", "glue"))
+    jig = ("alignment_frame",) if job.plates.frame_mm else ()
+    beads = glue if min(job.spacer.bead_mm, job.spacer.glue_mm) else ()
+    plates = tuple(part for parts in PARTS.values() for part in parts)
+    alone = {"sheet.step": ("sheet",)} if "sheet" in job.output.cad else {}
+    return {**PARTS, "spacer.step": spacer, **alone, "cell.step": (*plates, *spacer, *beads, "sheet", *jig)}
 
 
 def readable(folder: Path, reference: Reference) -> list[str]:
     """The STEP files that the kernel can read in some seconds."""
-    names = [f"cad/{file}" for file in FILES] + [f"cad/combs_{plate}.step" for plate in PLATES]
+    names = [f"cad/{file}" for file in files(reference)] + [f"cad/combs_{plate}.step" for plate in PLATES]
     for plate in PLATES:
         name = channel_file(plate, reference)
         with suppress(*DAMAGES):
@@ -129,9 +78,11 @@ def check(
     """
     found: Findings = ()
     goals, known = wanted(reference, masks), {}
-    for file, names in FILES.items():
+    for file, names in files(reference).items():
         name = f"cad/{file}"
         found += guarded("verify_step", name, _parts_of, got[name], name, names, goals, known)
+    if "domains" in reference.job.output.cad:
+        found += guarded("verify_step", OUTLINES, outlines, folder / OUTLINES, reference)
     for plate in PLATES:
         context = Context(plate, reference, masks.get(plate), counts.get(plate))
         name = channel_file(plate, reference)
@@ -139,6 +90,20 @@ def check(
         name = f"cad/combs_{plate}.step"
         found += guarded("verify_step", name, combs, name, got[name], context)
     return found, known
+
+
+OUTLINES = "cad/domains.step"
+
+
+def outlines(path: Path, reference: Reference) -> Iterator[Finding]:
+    """The names of all outlines: number, director, both plates' directions seen from above in degrees."""
+    lines = [np.degrees(a).round(2) % 180 for a in (reference.theta, reference.angle("bottom"), reference.angle("top"))]
+    goal = {
+        f"domain_{k:04d}_theta_{theta:06.2f}_bottom_{bottom:06.2f}_top_{top:06.2f}"
+        for k, (theta, bottom, top) in enumerate(zip(*lines, strict=True))
+    }
+    wrong = len(goal ^ set(counted(path)[1]))
+    yield measured("verify_outlines", OUTLINES, "names of outlines that are missing, or no domain's:", wrong, 0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,9 +209,23 @@ def channel_solids(folder: Path, name: str, result: Any, held: Context) -> Itera
 def _chosen(reference: Reference, counts: Floats | None) -> set[int]:
     """Domains whose channels must be solids; none if the job leaves the choice."""
     output = reference.job.output
-    if output.step == "all":
+    if output.step != "chosen":
         return set(np.flatnonzero(counts).tolist()) if counts is not None else set()
-    return set(output.step_domains)
+    touched = np.flatnonzero(_touched(reference)).tolist() if len(output.step_window_um) == 4 else []
+    return {*output.step_domains, *touched}
+
+
+def _touched(reference: Reference) -> Floats:
+    """(n_d,) whether a domain shares a point with the job's window: no edge of either separates them."""
+    x0, x1, y0, y1 = (
+        np.sort(np.array(reference.job.output.step_window_um[k::2]) / 1e3)[i] for k in (0, 1) for i in (0, 1)
+    )
+    window, corners = np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)]), reference.corners
+    near = np.all((corners.max(axis=1) >= window[0]) & (corners.min(axis=1) <= window[2]), axis=1)
+    edge = np.roll(corners, -1, axis=1) - corners
+    inward = np.stack([-edge[..., 1], edge[..., 0]], axis=2)
+    reach = (inward @ window.T).max(axis=2) - np.sum(inward * corners, axis=2)  # of the window, into the domain
+    return np.asarray(near & np.all(reach >= 0, axis=1))
 
 
 def _domain(name: str, part: Part, domain: int, held: Context) -> Iterator[Finding]:
@@ -273,7 +252,7 @@ def _domain(name: str, part: Part, domain: int, held: Context) -> Iterator[Findi
 
 def combs(name: str, result: Any, held: Context) -> Iterator[Finding]:
     """The mold surface of the chosen domains: domain less channels, as deep as they."""
-    area = _areas(held.reference)
+    area = held.reference.areas
     for part in value(result):
         where = f"{name}, {part.name}"
         digits = part.name.split("_")[1] if part.name.count("_") == 2 else ""

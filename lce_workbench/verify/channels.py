@@ -148,7 +148,7 @@ def check(name: str, polygons: Floats, plate: Plate, reference: Reference, count
         yield _worst(name, held, "verify_count", "channels more or less than in domains.csv:", _missing(held, counts))
     if len(held.domain):
         yield from _shapes(name, held, plate)
-        yield from _places(name, held)
+        yield from _places(name, held, plate)
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,7 +198,7 @@ def _shapes(name: str, held: Rows, plate: Plate) -> Iterator[Finding]:
         yield _worst(name, held, check, text, Deviations(values, limit, held.domain))
 
 
-def _places(name: str, held: Rows) -> Iterator[Finding]:
+def _places(name: str, held: Rows, plate: Plate) -> Iterator[Finding]:
     """Land between neighbours, distance from the border, and that every channel is as long as it can be."""
     centre = held.corners.mean(axis=0)
     line = np.exp(0.5j * np.angle(held.direction))[held.domain]
@@ -210,6 +210,13 @@ def _places(name: str, held: Rows) -> Iterator[Finding]:
         off = np.abs(lands - held.spec.spacing_um * 1e3)
         text = "the land between two channels differs from the job by"
         yield _worst(name, held, "verify_spacing", text, Deviations(off, ROUNDING, held.domain[order][same]))
+    if len(held.reference.phase):
+        goal = held.reference.phase[held.domain, PLATES.index(plate)] * 1e6
+        pitch = (held.spec.width_um + held.spec.spacing_um) * 1e3
+        turns = ((centre * np.exp(-1j * held.reference.angle(plate)[held.domain])).imag - goal) / pitch
+        off = np.abs(turns - np.rint(turns)) * pitch
+        text = "a channel misses the place that lets it meet its neighbour's by"
+        yield _worst(name, held, "verify_phase", text, Deviations(off, ROUNDING, held.domain))
     beyond, room = _room(held)
     text = "a channel comes nearer to its domain's border than the guard by"
     yield _worst(name, held, "verify_border", text, Deviations(beyond, 1.0, held.domain))
@@ -226,9 +233,11 @@ def _room(held: Rows) -> tuple[Floats, Floats]:
     unit, guard = held.along / held.length, held.spec.guard_um * 1e3
     nearest, rooms = np.full(len(held.domain), np.inf), np.full((2, len(held.domain)), np.inf)
     for start, end in zip(borders, np.roll(borders, -1, axis=0), strict=True):
-        inward = 1j * (end - start) / np.abs(end - start)
+        size = np.abs(end - start)
+        inward = 1j * (end - start) / np.where(size == 0, 1, size)  # 0 where a polygon repeats its last corner
         normal, origin = inward[held.domain], start[held.domain]
         free = ((held.corners - origin) * np.conj(normal)).real - guard
+        free = np.where(normal == 0, np.inf, free)
         nearest = np.minimum(nearest, free.min(axis=0))
         slope = (unit * np.conj(normal)).real
         for k, corners, away in ((0, (0, 3), slope), (1, (1, 2), -slope)):

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from lce_solver.types import Finding, Floats
 from lce_workbench.verify.finding import Unreadable, error, measured
-from lce_workbench.verify.layouts import areas, boxes
+from lce_workbench.verify.shapes import areas, boxes
 
 HALF = 750e3
 """Half the side of a cluster [nm]."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from array import array
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ import numpy as np
 from lce_solver.types import Floats
 from lce_workbench.verify.finding import Unreadable
 
-LAYERS = {1: "CHANNELS", 2: "MARKS", 3: "LABELS", 4: "TEST", 10: "PLATE", 11: "DOMAINS", 12: "SPACER"}
+LAYERS = {1: "CHANNELS", 2: "MARKS", 3: "LABELS", 4: "TEST", 10: "PLATE", 11: "DOMAINS", 12: "SPACER", 13: "SEAM"}
 """Numbers (GDSII, OASIS) and names (DXF, CIF) of the layers."""
 
 SHORT = {"CHAN": "CHANNELS", "MARK": "MARKS", "LABL": "LABELS", "PLAT": "PLATE", "DOMN": "DOMAINS", "SPCR": "SPACER"}
@@ -248,53 +248,3 @@ READERS: dict[str, Callable[[Path], Layout]] = {
     "cif": _cif,
 }
 """Ending -> reader."""
-
-
-def boxes(polygons: Floats) -> Floats:
-    """(n, 4) low x, low y, high x, high y of polygons (n, k, 2)."""
-    return np.concatenate([polygons.min(axis=1), polygons.max(axis=1)], axis=1)
-
-
-def areas(polygons: Floats) -> Floats:
-    """(n,) areas of polygons (n, k, 2), whichever way they run."""
-    p = polygons - polygons[:, :1]
-    q = np.roll(p, -1, axis=1)
-    return np.asarray(np.abs(np.sum(p[..., 0] * q[..., 1] - p[..., 1] * q[..., 0], axis=1)) / 2)
-
-
-def mirrored(polygons: Floats) -> Floats:
-    """Polygons seen from the other side, x -> -x."""
-    return np.asarray(polygons * np.array([-1.0, 1.0]))
-
-
-def canonical(polygons: Floats) -> Floats:
-    """(n, 2 k) rows that do not depend on where a polygon begins, which way it runs, nor on the order of polygons."""
-    n, k, _ = polygons.shape
-    p = polygons - polygons[:, :1]
-    q = np.roll(p, -1, axis=1)
-    clockwise = np.sum(p[..., 0] * q[..., 1] - p[..., 1] * q[..., 0], axis=1) < 0
-    turned = np.where(clockwise[:, None, None], polygons[:, ::-1], polygons)
-    order = np.lexsort((turned[..., 1].ravel(), turned[..., 0].ravel()))  # rank of every corner
-    rank = np.empty(n * k, dtype=np.int64)
-    rank[order] = np.arange(n * k)
-    first = rank.reshape(n, k).argmin(axis=1)
-    rolled = np.take_along_axis(turned, ((first[:, None] + np.arange(k)) % k)[..., None], axis=1).reshape(n, 2 * k)
-    return rolled[np.lexsort(rolled.T[::-1])]
-
-
-def unlike(one: Floats, other: Floats) -> Floats:
-    """Polygons (m, k, 2) of ``one`` that ``other`` lacks."""
-    if one.shape == other.shape and np.array_equal(one, other):
-        return one[:0]
-    if one.shape[1] != other.shape[1]:
-        return one
-    rows, others = canonical(one), canonical(other)
-    kind = np.dtype((np.void, rows.dtype.itemsize * rows.shape[1]))
-    missing = ~np.isin(*(np.ascontiguousarray(r + 0.0).view(kind).ravel() for r in (rows, others)))
-    return np.asarray(rows[missing].reshape(-1, one.shape[1], 2))
-
-
-def extent(groups: Iterable[Floats]) -> Floats:
-    """(4,) low x, low y, high x, high y of everything."""
-    found = np.concatenate([boxes(group) for group in groups if len(group)])
-    return np.concatenate([found[:, :2].min(axis=0), found[:, 2:].max(axis=0)])

@@ -12,15 +12,16 @@ from scipy.spatial import cKDTree
 from lce_solver.types import Finding, Floats
 from lce_workbench.verify import channels, clusters
 from lce_workbench.verify.finding import Findings, Unreadable, error, guarded, measured, same
-from lce_workbench.verify.layouts import LAYERS, Layout, areas, extent, mirrored, read, unlike
+from lce_workbench.verify.layouts import LAYERS, Layout, read
 from lce_workbench.verify.reference import Plate, Reference
+from lce_workbench.verify.shapes import areas, centroids, extent, mirrored, unlike
 
 CELLS = {"bottom": "LCE_BOTTOM", "top": "LCE_TOP"}
 
 GRID = 1e-9
 """[m]"""
 
-COMMON = ("TEST", "PLATE", "DOMAINS", "SPACER")
+COMMON = ("TEST", "PLATE", "DOMAINS", "SPACER", "SEAM")
 """Layers that are alike on both plates, seen from above."""
 
 
@@ -38,6 +39,8 @@ class Plates:
     """Polygons of `COMMON` [nm]."""
     marks: Mapping[str, Floats] = field(default_factory=dict)
     """Middles of the marks, see `clusters.centres` [nm]."""
+    places: Mapping[str, Floats] = field(default_factory=dict)
+    """Middles of the clusters by the form for their readings [nm]."""
 
 
 def check(folder: Path, plate: Plate, reference: Reference, counts: Floats | None) -> tuple[Findings, Plates]:
@@ -57,7 +60,7 @@ def check(folder: Path, plate: Plate, reference: Reference, counts: Floats | Non
         except Unreadable as fault:
             found.append(error("verify_mask", name, str(fault)))
             continue
-        found += guarded("verify_mask", name, _plain, name, layout, plate)
+        found += guarded("verify_mask", name, _plain, name, layout, plate, reference.seams)
         if first is not None:
             differences = guarded("verify_formats", name, _equal, name, layout, facts.name, first)
             found += differences
@@ -71,7 +74,7 @@ def check(folder: Path, plate: Plate, reference: Reference, counts: Floats | Non
     return tuple(found), facts
 
 
-def _plain(name: str, layout: Layout, plate: Plate) -> Iterator[Finding]:
+def _plain(name: str, layout: Layout, plate: Plate, seams: Floats) -> Iterator[Finding]:
     """Unit, cell, layers, and that there is nothing but polygons on the grid."""
     if layout.cells is not None:
         yield same("verify_cell", name, "the cell's name", " ".join(layout.cells), CELLS[plate])
@@ -80,7 +83,8 @@ def _plain(name: str, layout: Layout, plate: Plate) -> Iterator[Finding]:
         yield same("verify_grid", name, "the grid", unit, "1 nm")
         unit = f"{layout.grid[1] * 1e6:.6g} um"
         yield same("verify_grid", name, "the unit", unit, "0.001 um" if name.endswith(".cif") else "1 um")
-    yield same("verify_layers", name, "the list of layers", _listed({*layout.layers, "TEST"}), _listed(LAYERS.values()))
+    wanted = {*LAYERS.values()} - ({"SEAM"} if not len(seams) else set())
+    yield same("verify_layers", name, "the list of layers", _listed({*layout.layers, "TEST"}), _listed(wanted))
     yield same("verify_records", name, "what is no polygon", ", ".join(layout.others) or "nothing", "nothing")
     off = max(float(np.abs(p - np.rint(p)).max(initial=0.0)) for p in layout.layers.values())
     yield measured("verify_grid", name, "corners are off the grid by", off, 0.0, unit="nm")
@@ -140,17 +144,26 @@ class Seen:
             return
         yield from channels.check(self.name, self.layer("CHANNELS"), self.plate, self.reference, counts)
         yield self._borders()
+        if len(self.reference.seams):
+            yield self._seams()
 
     def _borders(self) -> Finding:
         """Every domain's outline has its corners at the design's."""
         drawn, corners = self.layer("DOMAINS"), self.reference.corners * 1e6
-        near = cKDTree(drawn.mean(axis=1)).query(corners.mean(axis=1))[1]
+        near = cKDTree(centroids(drawn)).query(centroids(corners))[1]
         off = np.linalg.norm(corners[:, :, None] - drawn[near][:, None], axis=3).min(axis=2).max(axis=1)
         worst = int(np.argmax(off))
         where = f"{self.name}, {self.reference.place(worst)}"
         text = f"{len(drawn)} outlines for {len(corners)} domains; a corner differs by"
         value = float(off[worst]) if len(drawn) == len(corners) else np.inf
         return measured("verify_outline", where, text, value, 1.0, unit="nm", places=int(np.sum(off > 1)))
+
+    def _seams(self) -> Finding:
+        """A line lies on every edge of a cut."""
+        lines, middles = self.layer("SEAM").mean(axis=1), self.reference.seams.mean(axis=1) * 1e6
+        off = cKDTree(lines).query(middles)[0] if len(lines) == len(middles) else np.array([np.inf])
+        text = f"{len(lines)} lines for {len(middles)} edges of cuts; one is away from its place by"
+        return measured("verify_seams", self.name, text, float(off.max()), 1.0, unit="nm")
 
     def against_form(self, at: dict[str, Floats] | None) -> Iterator[Finding]:
         """Marks and labels."""
@@ -171,7 +184,7 @@ class Seen:
             area = channels.rows(quads, self.plate, self.reference).area
         totals = {name: (len(p), float(areas(p).sum()) * 1e-12) for name, p in self.layout.layers.items()}
         common = {name: self.layer(name) for name in COMMON}
-        return Plates(self.name, area, totals, common, self._middles(at) if at is not None else {})
+        return Plates(self.name, area, totals, common, self._middles(at) if at is not None else {}, at or {})
 
 
 def both(found: Mapping[str, Plates], form: Path) -> Iterator[Finding]:
@@ -194,7 +207,8 @@ def job_sheet(path: Path, found: Mapping[str, Plates]) -> Iterator[Finding]:
         words = line.split()
         if len(words) == 6 and words[0] in LAYERS.values():
             said[words[0]] = [(int(words[2]), float(words[3])), (int(words[4]), float(words[5]))]
-    yield same("verify_job_sheet", name, "the list of layers", _listed(said), _listed(LAYERS.values()))
+    wanted = {*LAYERS.values()} - {layer for layer in ("SEAM",) if layer not in found["bottom"].totals}
+    yield same("verify_job_sheet", name, "the list of layers", _listed(said), _listed(wanted))
     for layer, pair in said.items():
         for plate, (count, area) in zip(("bottom", "top"), pair, strict=True):
             have = found[plate].totals.get(layer, (0, 0.0))

@@ -90,10 +90,11 @@ def stretches(reference: Reference) -> Finding:
     aa, ab, bb = (np.sum(u * v, axis=1) for u, v in ((a, a), (a, b), (b, b)))
     trace = (pp * bb - 2 * pq * ab + qq * aa) / area**2
     ratio = np.sqrt(np.maximum(pp * qq - pq**2, 0)) / np.abs(area)
-    s1, s2 = reference.stretch.T
+    s1, s2 = reference.stretches.T
     off = np.maximum(np.abs(trace / (s1**2 + s2**2) - 1), np.abs(ratio / (s1 * s2) - 1))
     worst = int(np.argmax(off))
-    where = f"{DESIGN}, {reference.place(worst)}"
+    x, y = flat[worst].mean(axis=0)
+    where = f"{DESIGN}, triangle {worst} at ({x:.2f}, {y:.2f}) mm"
     text = "the stated stretches miss the map's by the fraction"
     return measured("verify_stretch", where, text, float(off[worst]), SAME)
 
@@ -135,14 +136,12 @@ def angles(path: Path, reference: Reference) -> Iterator[Finding]:
         apart = (columns[column] - np.degrees(wanted) + 90) % 180 - 90
         outside = (columns[column] < 0) | (columns[column] >= 180)
         yield _column(column, np.where(outside, np.inf, np.abs(apart)), TABLE_DEG, "deg", reference)
-    corners = reference.corners
-    (ax, ay), (bx, by) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
     values = {
         "domain": (np.arange(count), 0.0, ""),
         "dtheta_deg": (np.degrees(reference.dtheta), TABLE_DEG, "deg"),
         "x_mm": (reference.centres[:, 0], 1e-6, "mm"),
         "y_mm": (reference.centres[:, 1], 1e-6, "mm"),
-        "area_mm2": ((ax * by - ay * bx) / 2, 1e-9, "mm2"),
+        "area_mm2": (reference.areas, 1e-9, "mm2"),
         "stretch_along": (reference.stretch[:, 0], 1e-6, ""),
         "stretch_across": (reference.stretch[:, 1], 1e-6, ""),
     }

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import zipfile
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -13,6 +15,7 @@ from lce_solver.types import Floats, Ints
 from lce_workbench.core import jobfile
 from lce_workbench.core.job import Job
 from lce_workbench.verify.finding import Unreadable
+from lce_workbench.verify.shapes import areas, centroids
 
 Plate = Literal["bottom", "top"]
 
@@ -29,7 +32,17 @@ SHAPES: dict[str, tuple[str | int, ...]] = {
     "nu": (),
     "thickness": (),
 }
-"""Array of `design.npz` -> its shape."""
+"""Array of `design.npz` -> its shape; the domains are its triangles."""
+
+OWN: dict[str, tuple[str | int, ...]] = {
+    "domain_vertices": ("corners", 2),
+    "domain_polygons": ("domains", "sides"),
+    "domain_theta": ("domains",),
+    "domain_dtheta": ("domains",),
+    "domain_stretch": ("domains", 2),
+    "domain_phase": ("phases", 2),
+}
+"""The same of domains that are stored beside the design."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,27 +53,44 @@ class Reference:
     target: Floats
     """(n_v, 3) target [mm]."""
     triangles: Ints
-    """(n_d, 3) vertex indices."""
+    """(n_t, 3) vertex indices."""
     flat: Floats
     """(n_v, 2) the sheet seen from above [mm]."""
+    stretches: Floats
+    """(n_t, 2) of every triangle along and across its director."""
+    thickness: float
+    """[mm]"""
+    corners: Floats
+    """(n_d, k, 2) of every domain, counter-clockwise; those with fewer than k repeat their last one [mm]."""
     theta: Floats
     """(n_d,) director at the mid-plane [rad]."""
     dtheta: Floats
     """(n_d,) twist [rad]."""
     stretch: Floats
     """(n_d, 2) along and across the director."""
-    thickness: float
-    """[mm]"""
+    phase: Floats
+    """(n_d, 2) how far left of the origin a channel's middle line runs on the bottom and on the top plate, modulo the
+    pitch [mm]; (0, 2) where it is free."""
 
-    @property
-    def corners(self) -> Floats:
-        """(n_d, 3, 2) of every domain [mm]."""
-        return self.flat[self.triangles]
-
-    @property
+    @cached_property
     def centres(self) -> Floats:
-        """(n_d, 2) of every domain [mm]."""
-        return np.asarray(self.corners.mean(axis=1))
+        """(n_d, 2) centre of mass of every domain [mm]."""
+        return centroids(self.corners)
+
+    @cached_property
+    def areas(self) -> Floats:
+        """(n_d,) of every domain [mm2]."""
+        return areas(self.corners)
+
+    @cached_property
+    def seams(self) -> Floats:
+        """(m, 2, 2) edges of the flat sheet's rim that lie on another one in the target: sides of cuts [mm]."""
+        sides = np.concatenate([self.triangles[:, pair] for pair in ([0, 1], [1, 2], [2, 0])])
+        _, first, count = np.unique(np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True)
+        rim = sides[first[count == 1]]
+        place = np.unique(self.target, axis=0, return_inverse=True)[1].ravel()
+        _, group, count = np.unique(np.sort(place[rim], axis=1), axis=0, return_inverse=True, return_counts=True)
+        return np.asarray(self.flat[rim[count[group.ravel()] == 2]])
 
     def angle(self, plate: Plate) -> Floats:
         """(n_d,) channel direction seen from above: the film's director turns by dtheta from bottom to top [rad]."""
@@ -84,28 +114,58 @@ def read(folder: Path) -> Reference:
         `design.npz` cannot be read, or is no design.
     """
     job = jobfile.load(folder / "job.toml")
-    data = arrays(folder / "design.npz", tuple(SHAPES))
-    sizes = {"points": len(np.atleast_1d(data["uv"])), "domains": len(np.atleast_1d(data["theta"]))}
-    for name, shape in SHAPES.items():
-        wanted = tuple(sizes.get(n, n) if isinstance(n, str) else n for n in shape)
-        if data[name].shape != wanted or not np.all(np.isfinite(data[name].astype(np.float64))):
-            msg = f"design.npz: {name} has the shape {data[name].shape} instead of {wanted}, or holds no finite numbers"
-            raise Unreadable(msg)
-    faces = data["faces"].astype(np.int64)
-    if not len(faces) or faces.min() < 0 or faces.max() >= sizes["points"]:
-        msg = "design.npz: faces name points that do not exist"
-        raise Unreadable(msg)
+    path = folder / "design.npz"
+    own = job.domains.kind != "triangles" or job.channels.align_phase
+    data = arrays(path, (*SHAPES, *OWN) if own else tuple(SHAPES))
+    _require(data, SHAPES, {"points": len(np.atleast_1d(data["uv"])), "domains": len(np.atleast_1d(data["theta"]))})
+    faces = _indices(data["faces"], data["uv"], 0)
     given = {name: data[name].astype(np.float64) for name in SHAPES}
+    domains = {name: given[name] for name in ("theta", "dtheta", "stretch")}
+    domains |= {"corners": given["uv"][faces], "phase": np.empty((0, 2))}
     return Reference(
         job=job,
         target=given["vertices"],
         triangles=faces,
         flat=given["uv"],
-        theta=given["theta"],
-        dtheta=given["dtheta"],
-        stretch=given["stretch"],
+        stretches=given["stretch"],
         thickness=float(given["thickness"]),
+        **(_own(data, job.channels.align_phase) if own else domains),
     )
+
+
+def _own(data: Mapping[str, Any], phased: bool) -> dict[str, Floats]:
+    """Domains that are stored beside the design."""
+    polygons = data["domain_polygons"]
+    count = len(np.atleast_1d(data["domain_theta"]))
+    sizes = {"corners": len(np.atleast_1d(data["domain_vertices"])), "domains": count}
+    _require(data, OWN, sizes | {"sides": polygons.shape[-1] if polygons.ndim else 0, "phases": count * phased})
+    rows = _indices(polygons, data["domain_vertices"], -1)
+    sides = np.sum(rows >= 0, axis=1)
+    if sides.min() < 3:
+        msg = "design.npz: a domain has fewer than three corners"
+        raise Unreadable(msg)
+    place = np.minimum(np.arange(rows.shape[1]), sides[:, None] - 1)
+    found = {name: data[f"domain_{name}"].astype(np.float64) for name in ("theta", "dtheta", "stretch", "phase")}
+    return {**found, "corners": data["domain_vertices"].astype(np.float64)[np.take_along_axis(rows, place, axis=1)]}
+
+
+def _require(data: Mapping[str, Any], shapes: Mapping[str, tuple[str | int, ...]], sizes: Mapping[str, int]) -> None:
+    """Refuse arrays of other shapes, and what is no finite number."""
+    for name, shape in shapes.items():
+        wanted = tuple(sizes[n] if isinstance(n, str) else n for n in shape)
+        numeric = np.issubdtype(data[name].dtype, np.number)
+        if data[name].shape != wanted or not numeric or not np.all(np.isfinite(data[name])):
+            msg = f"design.npz: {name} has the shape {data[name].shape} instead of {wanted}, or holds no finite numbers"
+            raise Unreadable(msg)
+
+
+def _indices(rows: Any, points: Floats, low: int) -> Ints:
+    """Rows of indices of points."""
+    found: Ints = rows.astype(np.int64)
+    if not len(found) or found.min() < low or found.max() >= len(points):
+        msg = "design.npz: domains name points that do not exist"
+        raise Unreadable(msg)
+    return found
 
 
 def arrays(path: Path, names: tuple[str, ...]) -> dict[str, Floats]:

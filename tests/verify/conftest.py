@@ -29,6 +29,7 @@ steps = 4
 masks = ["gds", "oas", "dxf", "r12.dxf", "cif"]
 pictures = false
 freecad = false
+drawings = false
 """
 
 
@@ -47,13 +48,28 @@ def copy(built, tmp_path):
 
 
 @pytest.fixture
+def solid(built, tmp_path):
+    """A copy with the CAD files and the masks as GDSII alone."""
+    folder = shutil.copytree(
+        built, tmp_path / "solid", ignore=shutil.ignore_patterns("*.oas", "*.r12.dxf", "bottom.dxf", "top.dxf", "*.cif")
+    )
+    _masks_alone(folder)
+    return folder
+
+
+def _masks_alone(folder):
+    """Let the job ask for GDSII alone."""
+    job = folder / "job.toml"
+    job.write_text(job.read_text().replace('["gds", "oas", "dxf", "r12.dxf", "cif"]', '["gds"]'))
+
+
+@pytest.fixture
 def masked(built, tmp_path):
     """A copy without CAD files, with the masks as GDSII alone: quick to verify."""
     folder = shutil.copytree(
         built, tmp_path / "masked", ignore=shutil.ignore_patterns("cad", "*.oas", "*.dxf", "*.cif")
     )
-    job = folder / "job.toml"
-    job.write_text(job.read_text().replace('["gds", "oas", "dxf", "r12.dxf", "cif"]', '["gds"]'))
+    _masks_alone(folder)
     manifest = json.loads((folder / "manifest.json").read_text())
     manifest["stages"].remove("cad")
     (folder / "manifest.json").write_text(json.dumps(manifest))
