@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import sys
 
 import numpy as np
 import pytest
@@ -134,3 +135,10 @@ def test_a_file_that_may_not_be_read(papers):
     (papers / "design.npz").unlink()
     os.mkfifo(papers / "design.npz")
     assert "verify_design" in grouped(verify(papers))
+
+
+@pytest.mark.parametrize("reader", ["gdstk", "ezdxf"])
+def test_a_reader_that_is_missing_is_no_clean_bill(masked, monkeypatch, capsys, reader):
+    monkeypatch.setitem(sys.modules, reader, None)  # Python then knows no such module
+    assert main(["verify", str(masked)]) == 4
+    assert f"the reader {reader} is missing, so nothing was verified" in capsys.readouterr().err
