@@ -129,7 +129,8 @@ def _sure(review: Review) -> tuple[str, str]:
     ]
     if review.prediction is None:
         said.append("The shape was not simulated.")
-    said.append("No study of tolerances is in this folder, so how far errors of the bench carry is not known.")
+    studies = [_sentence(r["message"]) for r in review.findings if r["check"] == "study"]
+    said += studies or ["No study of tolerances is in this folder, so how far errors of the bench carry is not known."]
     return ("warning" if estimate or review.prediction is None else "info") if solved else "error", " ".join(said)
 
 
@@ -286,7 +287,8 @@ def left_out(review: Review) -> Iterator[str]:
         yield "Assembled cell: run `./lce cad` on the folder, then `./lce review`."
     if not review.design.starts:
         yield "Starts that competed: the design does not record them."
-    yield "Tolerance study: none in this folder."
+    if not any(r["check"] == "study" for r in review.findings):
+        yield "Tolerance study: run `./lce study NAME` on the folder, then `./lce review`."
 
 
 def _numbers(column: Floats) -> list[float]:

@@ -63,6 +63,14 @@ def test_a_study_adds_its_files_and_later_stages_keep_them(designed, capsys):
     assert [record["stage"] for record in manifest["findings"]].count("study twist") == 1
 
 
+def test_the_review_tells_the_studies_of_its_folder(designed):
+    assert main(["study", "twist", str(designed), "--samples", "5", "--quiet"]) == 0
+    assert main(["review", str(designed), "--quiet"]) in {0, 1}
+    text = (designed / "report.json").read_text()
+    assert "Study twist, twist [of the design's]: the simulated sheet reaches the target unmirrored in 0 of 1 at 0" in text
+    assert "No study of tolerances" not in text
+
+
 def test_the_table_counts_what_the_samples_say(designed):
     assert main(["study", "twist", str(designed), "--samples", "10", "--quiet"]) == 0
     with (designed / "studies" / "twist.csv").open() as file:
