@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lce_solver.contest import FAVOUR
 from lce_solver.types import Floats
 from lce_workbench.core.domains import Domains
 from lce_workbench.review.data import Predicted, Review
@@ -172,7 +173,8 @@ FIGURES: dict[str, Plan] = {
     "starts": Plan(
         "Starts that competed",
         "The lowest bar wins: error of the stretches times the share of bending that twist cannot reach. A symmetric "
-        "solution (◆) wins over lopsided ones less than 3 % better. Hatched: flipped triangles or a crossing outline.",
+        f"solution (◆) wins over lopsided ones less than {FAVOUR:.0%} better. Hatched: flipped triangles or a crossing "
+        "outline; starts that dropped out early show what they had by then.",
         _starts,
         wanted=lambda review: bool(review.design.starts),
     ),
