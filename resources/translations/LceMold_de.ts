@@ -256,6 +256,14 @@
    <translation>das Ziel neu vernetzen, mit gleichmäßigen Dreiecken von der Größe der Domänen; nein behält die Dreiecke der Eingabe</translation>
   </message>
   <message>
+   <source>Target cuts</source>
+   <translation>Ziel aufschneiden</translation>
+  </message>
+  <message>
+   <source>cut the target open where it is closed, has handles or is too curved; the sheet then has seams</source>
+   <translation>das Ziel aufschneiden, wo es geschlossen ist, Henkel hat oder zu stark gekrümmt ist; das Blatt bekommt dann Nähte</translation>
+  </message>
+  <message>
    <source>Target flip</source>
    <translation>Ziel wenden</translation>
   </message>
@@ -432,6 +440,14 @@
    <translation>Dicke des Glases</translation>
   </message>
   <message>
+   <source>Plate replications</source>
+   <translation>Abformungen</translation>
+  </message>
+  <message>
+   <source>casts from master to plate: PDMS, epoxy; an odd number turns handedness and relief</source>
+   <translation>Abgüsse vom Master bis zur Platte: PDMS, Epoxid; eine ungerade Zahl kehrt Händigkeit und Relief um</translation>
+  </message>
+  <message>
    <source>Plate epoxy</source>
    <translation>Epoxidschicht</translation>
   </message>
@@ -584,6 +600,22 @@
    <translation>Iterationsgrenze eines Starts</translation>
   </message>
   <message>
+   <source>Solver smoothing</source>
+   <translation>Glättung</translation>
+  </message>
+  <message>
+   <source>weight of the director's jumps between triangles; 0 meets the stretches best, 0.02 halves the jumps</source>
+   <translation>Gewicht der Sprünge des Direktors zwischen Dreiecken; 0 trifft die Dehnungen am besten, 0.02 halbiert die Sprünge</translation>
+  </message>
+  <message>
+   <source>Prediction correct</source>
+   <translation>Korrektur durch Simulation</translation>
+  </message>
+  <message>
+   <source>let the simulation correct the design: director and twist (full), the twist alone (dtheta), nothing (off)</source>
+   <translation>die Simulation den Entwurf korrigieren lassen: Direktor und Verdrillung (full), nur die Verdrillung (dtheta), nichts (off)</translation>
+  </message>
+  <message>
    <source>Prediction seed</source>
    <translation>Startwert der Vorhersage</translation>
   </message>
@@ -606,6 +638,38 @@
   <message>
    <source>steps of the heating</source>
    <translation>Schritte des Erwärmens</translation>
+  </message>
+  <message>
+   <source>Prediction plate</source>
+   <translation>Heizplatte</translation>
+  </message>
+  <message>
+   <source>the sheet has weight and lies on the hot plate, which it can leave upwards; without friction</source>
+   <translation>das Blatt hat Gewicht und liegt auf der Heizplatte, von der es nach oben abheben kann; ohne Reibung</translation>
+  </message>
+  <message>
+   <source>Prediction density kg m3</source>
+   <translation>Dichte des Films (kg/m3)</translation>
+  </message>
+  <message>
+   <source>density of the film</source>
+   <translation>Dichte des Films</translation>
+  </message>
+  <message>
+   <source>Prediction modulus mpa</source>
+   <translation>Elastizitätsmodul (MPa)</translation>
+  </message>
+  <message>
+   <source>Young's modulus of the hot film, which resists its weight</source>
+   <translation>Elastizitätsmodul des heißen Films, der seinem Gewicht widersteht</translation>
+  </message>
+  <message>
+   <source>Prediction film</source>
+   <translation>Film der Erwärmung</translation>
+  </message>
+  <message>
+   <source>write the heating as an animation, prediction_film.glb</source>
+   <translation>die Erwärmung als Animation schreiben, prediction_film.glb</translation>
   </message>
   <message>
    <source>Output masks</source>
@@ -656,6 +720,38 @@
    <translation>das FreeCAD-Dokument cad/cell.FCStd schreiben (braucht freecadcmd)</translation>
   </message>
   <message>
+   <source>Output cad</source>
+   <translation>Weitere CAD-Dateien</translation>
+  </message>
+  <message>
+   <source>further CAD files: domains (outlines named with their angles), sheet (flat, and as predicted when heated), stl, 3mf (plates, patterned face up, for a microprinter), svg, dxf (outlines of all parts, true mm)</source>
+   <translation>weitere CAD-Dateien: domains (Umrisse, nach ihren Winkeln benannt), sheet (flach, und wie vorhergesagt erwärmt), stl, 3mf (Platten, Muster nach oben, für einen Mikrodrucker), svg, dxf (Umrisse aller Teile, in mm)</translation>
+  </message>
+  <message>
+   <source>Output drawings</source>
+   <translation>Zeichnungen</translation>
+  </message>
+  <message>
+   <source>fabrication drawings, drawings/*.pdf, .svg, .dxf (needs freecadcmd)</source>
+   <translation>Fertigungszeichnungen, drawings/*.pdf, .svg, .dxf (braucht freecadcmd)</translation>
+  </message>
+  <message>
+   <source>Output author</source>
+   <translation>Gezeichnet von</translation>
+  </message>
+  <message>
+   <source>who drew it, for the drawings' title block</source>
+   <translation>wer gezeichnet hat, für das Schriftfeld der Zeichnungen</translation>
+  </message>
+  <message>
+   <source>Output date</source>
+   <translation>Datum</translation>
+  </message>
+  <message>
+   <source>date for the drawings' title block, as it shall stand there</source>
+   <translation>Datum für das Schriftfeld der Zeichnungen, wie es dort stehen soll</translation>
+  </message>
+  <message>
    <source>Output step domains</source>
    <translation>Domänen als Körper</translation>
   </message>
@@ -664,12 +760,20 @@
    <translation>Domänen, deren Kanäle Körper werden; Standard: die mittlere</translation>
   </message>
   <message>
+   <source>Output step window</source>
+   <translation>Fenster</translation>
+  </message>
+  <message>
+   <source>x0, y0, x1, y1 [um] of a window: the domains that it touches become solids too</source>
+   <translation>x0, y0, x1, y1 [um] eines Fensters: auch die Domänen, die es berührt, werden Körper</translation>
+  </message>
+  <message>
    <source>Output step</source>
    <translation>STEP-Umfang</translation>
   </message>
   <message>
-   <source>channel solids in cad/channels_*.step: those of step_domains, or all (some 200 MB a plate of 20 mm)</source>
-   <translation>Kanalkörper in cad/channels_*.step: die von step_domains oder alle (etwa 200 MB je Platte von 20 mm)</translation>
+   <source>channel solids in cad/channels_*.step: of the chosen domains; all (some 250 MB a plate of 20 mm); or exact, each a solid of its own with its ends along the domain's border (some 6 GB, in files of 64 domains)</source>
+   <translation>Kanalkörper in cad/channels_*.step: der gewählten Domänen; all: aller (etwa 250 MB je Platte von 20 mm); oder exact: jeder ein eigener Körper mit Enden entlang der Domänengrenze (etwa 6 GB, in Dateien zu 64 Domänen)</translation>
   </message>
   <message>
    <source>Output step instances</source>
@@ -678,6 +782,38 @@
   <message>
    <source>how channels of one length share a solid: mapped items, or assembly components (3 times larger) for programs that lose mapped items</source>
    <translation>wie sich Kanäle gleicher Länge einen Körper teilen: als mapped items oder als Baugruppenteile (dreimal größer) für Programme, die mapped items verlieren</translation>
+  </message>
+  <message>
+   <source>Output relief</source>
+   <translation>Relief</translation>
+  </message>
+  <message>
+   <source>height map and mesh of a window (step_window_um, or 30 um) as the laser writes it: cad/relief_*</source>
+   <translation>Höhenkarte und Netz eines Fensters (step_window_um, oder 30 um), wie der Laser es schreibt: cad/relief_*</translation>
+  </message>
+  <message>
+   <source>Output relief spot</source>
+   <translation>Schreibfleck des Reliefs</translation>
+  </message>
+  <message>
+   <source>1/e2 diameter of the writing spot in the relief</source>
+   <translation>1/e2-Durchmesser des Schreibflecks im Relief</translation>
+  </message>
+  <message>
+   <source>Output relief contrast</source>
+   <translation>Kontrast des Reliefs</translation>
+  </message>
+  <message>
+   <source>contrast of the resist in the relief: 1 linear, large: a threshold</source>
+   <translation>Kontrast des Lacks im Relief: 1 linear, groß: eine Schwelle</translation>
+  </message>
+  <message>
+   <source>Output relief pixel nm</source>
+   <translation>Pixel des Reliefs (nm)</translation>
+  </message>
+  <message>
+   <source>pixel of the relief</source>
+   <translation>Pixel des Reliefs</translation>
   </message>
   <message>
    <source>Output step gzip</source>

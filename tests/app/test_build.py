@@ -309,7 +309,7 @@ def test_help_and_version_end_with_0(capsys):
 def test_a_defect_of_ours_is_one_sentence_too(capsys, monkeypatch, job):
     """The last net: whatever is raised, the user sees one sentence and no traceback."""
 
-    def broken(*_args):
+    def broken(*_args, **_more):
         raise ZeroDivisionError
 
     monkeypatch.setattr("lce_workbench.pipeline.build", broken)

@@ -31,7 +31,7 @@ def test_both_kernels_agree_on_every_part(sample, freecad):
 
 def test_freecad_reads_the_step_files(sample, freecad):
     for name, found in freecad["files"].items():
-        if "/" in name:  # all channels: see test_instances
+        if "/" in name or name == "domains.step":  # all channels: see test_instances; outlines: see test_levels
             continue
         prisms = FILES[name](sample) if name in FILES else sample.group(f"channels_{CHANNEL_FILES[name]}")
         assert len(found) == len(prisms)

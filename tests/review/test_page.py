@@ -89,10 +89,11 @@ def test_the_table_sorts_filters_and_downloads(page, built):
     page.click("#table th[data-name=dtheta_deg] button")
     assert [float(row[5]) for row in shown_rows(page)[:10]] == values[::-1][:10]
     assert page.get_attribute("#table th[data-name=dtheta_deg]", "aria-sort") == "descending"
+    low, high = np.round(np.percentile([float(row["theta_deg"]) for row in table], [30, 60]), 3)
     for text, passes in (
-        (">90", lambda v: v > 90),
-        ("<=45.5", lambda v: v <= 45.5),
-        ("20..60", lambda v: 20 <= v <= 60),
+        (f">{low}", lambda v: v > low),
+        (f"<={high}", lambda v: v <= high),
+        (f"{low}..{high}", lambda v: low <= v <= high),
     ):
         page.fill("#table th[data-name=theta_deg] input", text)
         left = sum(passes(float(row["theta_deg"])) for row in table)
@@ -145,7 +146,9 @@ def test_the_map_zooms_by_wheel_keys_and_drag_and_the_top_plate_is_mirrored(page
     page.mouse.wheel(0, -400)
     page.wait_for_timeout(200)
     assert page.evaluate("review.sheet.camera.scale") > 1.5 * scale
-    assert at_domain(page, 40, built) == pytest.approx((x, y), abs=0.5)  # what is under the pointer stays there
+    assert at_domain(page, 40, built) == pytest.approx(
+        (x, y), abs=1.5
+    )  # what is under the pointer, a whole pixel, stays there
     page.mouse.down()
     page.mouse.move(x + 50, y + 20, steps=4)
     page.mouse.up()
@@ -167,7 +170,9 @@ def test_the_map_has_the_colour_of_what_it_shows(page, built):
     seen, table = pixels(page.locator("#map-canvas")), rows(built)
     twist = np.array([float(row["dtheta_deg"]) for row in table])
     at = np.array([page.evaluate(f"review.sheet.toScreen({row['x_mm']}, {row['y_mm']})") for row in table])
-    red, _, blue = seen[tuple(np.floor(at).astype(int).T[::-1])].T
+    column, row = np.floor(at).astype(int).T
+    around = [seen[row + j, column + i] for i in range(-3, 4) for j in range(-3, 4)]  # streaks cross the middle
+    red, _, blue = np.median(around, axis=0).T
     assert np.corrcoef(red - blue, twist)[0, 1] < -0.9
 
 

@@ -243,12 +243,22 @@ def test_a_neck_thinner_than_the_edge_is_refused_or_kept():
         assert (len(boundary_loops(found.faces)), euler(found.faces)) == (2, 0)
 
 
+@pytest.fixture
+def pythons_ctrl_c():
+    """Whatever an earlier test has left."""
+    former = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, former)
+
+
+@pytest.mark.usefixtures("pythons_ctrl_c")
 def test_ctrl_c_is_still_caught_after_remeshing():
     remesh(square(10), 0.2)
     with pytest.raises(KeyboardInterrupt):
         signal.raise_signal(signal.SIGINT)
 
 
+@pytest.mark.usefixtures("pythons_ctrl_c")
 def test_ctrl_c_in_the_middle_of_remeshing_does_not_kill():
     hit = threading.Timer(0.3, signal.pthread_kill, (threading.main_thread().ident, signal.SIGINT))
     with pytest.raises(KeyboardInterrupt):
