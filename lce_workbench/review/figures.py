@@ -173,8 +173,8 @@ FIGURES: dict[str, Plan] = {
     "starts": Plan(
         "Starts that competed",
         "The lowest bar wins: error of the stretches times the share of bending that twist cannot reach. A symmetric "
-        f"solution (◆) wins over lopsided ones less than {100 * FAVOUR:.0f} % better. Hatched: flipped triangles or a crossing "
-        "outline; starts that dropped out early show what they had by then.",
+        f"solution (◆) wins over lopsided ones less than {100 * FAVOUR:.0f} % better. Hatched: flipped triangles "
+        "or a crossing outline; starts that dropped out early show what they had by then.",
         _starts,
         wanted=lambda review: bool(review.design.starts),
     ),

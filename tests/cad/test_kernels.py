@@ -11,7 +11,7 @@ from OCP.TopTools import TopTools_ListOfShape
 
 from lce_solver.errors import LceError
 from lce_workbench.cad.solids import VOLUME_TOLERANCE, require_volume, solid
-from lce_workbench.cad.step import CHANNEL_FILES, FILES
+from lce_workbench.cad.step import CHANNEL_FILES, EXTRAS, FILES
 from lce_workbench.core.prism import Prism
 
 
@@ -33,7 +33,8 @@ def test_freecad_reads_the_step_files(sample, freecad):
     for name, found in freecad["files"].items():
         if "/" in name or name == "domains.step":  # all channels: see test_instances; outlines: see test_levels
             continue
-        prisms = FILES[name](sample) if name in FILES else sample.group(f"channels_{CHANNEL_FILES[name]}")
+        parts = {**FILES, **EXTRAS["sheet"]}
+        prisms = parts[name](sample) if name in parts else sample.group(f"channels_{CHANNEL_FILES[name]}")
         assert len(found) == len(prisms)
         assert all(s["valid"] for s in found)
         for s, prism in zip(found, prisms, strict=True):
