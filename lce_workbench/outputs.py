@@ -312,7 +312,7 @@ def read_arrays(path: Path, make: Callable[[Mapping[str, Any]], Made]) -> Made:
         with np.load(path, allow_pickle=False) as data:
             return make({name: data[name] for name in data.files})
     except (OSError, ValueError, KeyError) as fault:
-        msg = f"{path} is not a readable design ({fault}); run `./lce design` again"
+        msg = f"{path} is not a readable design, or one of another version ({fault}); run `./lce design` again"
         raise InputError(msg) from None
 
 
