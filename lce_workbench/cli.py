@@ -1,4 +1,7 @@
-"""The command line: `./lce COMMAND`. The only place that prints and that turns faults into exit codes."""
+"""The command line: `./lce COMMAND`. The only place that prints and that turns faults into exit codes.
+
+Each command imports what it runs, so that `--help`, `--version` and a wrong word are answered at once.
+"""
 
 from __future__ import annotations
 
@@ -12,24 +15,26 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
-from lce_solver.cut import handles
 from lce_solver.errors import InputError, LceError
-from lce_solver.surface import boundary_loops, load
-from lce_solver.types import Progress, silent
-from lce_workbench import ROOT, __version__, pipeline
-from lce_workbench.core import align, feasibility, jobfile
-from lce_workbench.core.job import Job, Target
-from lce_workbench.core.perturb import STUDIES
-from lce_workbench.outputs import has_error, read_manifest, told
-from lce_workbench.studies import SAMPLES, estimate, study
+from lce_workbench import ROOT, __version__
+
+if TYPE_CHECKING:
+    from lce_solver.types import Progress
+    from lce_workbench.core.job import Job
 
 DEMO = ROOT / "templates" / "demo.toml"
 
 
 class Parser(argparse.ArgumentParser):
     """Usage faults are one sentence and exit code 2."""
+
+    more: Callable[[], str] = staticmethod(str)
+    """What the help says beyond the description, made when it is asked for."""
+
+    def format_help(self) -> str:
+        return super().format_help() + self.more()
 
     def error(self, message: str) -> NoReturn:
         msg = f"{message}; see ./lce --help"
@@ -94,7 +99,7 @@ def _parser() -> Parser:
     parser.add_argument("--version", action="version", version=f"lce {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND", parser_class=Parser)
 
-    def command(name: str, run: Callable[[argparse.Namespace], int], doc: str) -> argparse.ArgumentParser:
+    def command(name: str, run: Callable[[argparse.Namespace], int], doc: str) -> Parser:
         sub = commands.add_parser(name, help=doc, description=doc, parents=[common])
         sub.set_defaults(run=run, command=name)
         return sub
@@ -129,14 +134,12 @@ def _parser() -> Parser:
         if name == "mask":
             _scheduler(sub)
     studied = command(
-        "study",
-        _study,
-        "Simulates the heating many times, with faults of film, plates or material: into DIR/studies. "
-        + " ".join(f"{name}: {one.question}" for name, one in STUDIES.items()),
+        "study", _study, "Simulates the heating many times, with faults of film, plates or material: into DIR/studies."
     )
-    studied.add_argument("name", choices=STUDIES, metavar="NAME", help=", ".join(STUDIES))
+    studied.more = _studies
+    studied.add_argument("name", metavar="NAME", help="which study, see below")
     studied.add_argument("folder", type=Path, metavar="DIR")
-    studied.add_argument("--samples", type=int, default=SAMPLES, metavar="N", help=f"default {SAMPLES}")
+    studied.add_argument("--samples", type=int, metavar="N", help="default: see below")
     _scheduler(studied)
     checked = command("verify", _verify, "Reads the written files back and compares them with the design.")
     checked.add_argument("folder", type=Path, metavar="DIR")
@@ -165,18 +168,35 @@ def _scheduler(sub: argparse.ArgumentParser) -> None:
     )
 
 
+def _studies() -> str:
+    from lce_workbench.core.perturb import STUDIES
+    from lce_workbench.studies import SAMPLES
+
+    lines = (f"  {name:20}  {one.question}\n" for name, one in STUDIES.items())
+    return f"\nstudies, {SAMPLES} samples unless you say another number:\n{''.join(lines)}"
+
+
 def _demo(args: argparse.Namespace) -> int:
-    return _run(args, jobfile.load(DEMO), DEMO.parent, args.out, list(pipeline.STAGES))
+    from lce_workbench.core import jobfile
+    from lce_workbench.pipeline import STAGES
+
+    return _run(args, jobfile.load(DEMO), DEMO.parent, args.out, list(STAGES))
 
 
 def _job(args: argparse.Namespace) -> int:
+    from lce_workbench.core import jobfile
+    from lce_workbench.pipeline import STAGES
+
     job = jobfile.load(args.job, args.settings)
     out = args.out or args.job.parent / "out" / args.job.stem
-    names = list(pipeline.STAGES) if args.command == "build" else ["design"]
+    names = list(STAGES) if args.command == "build" else ["design"]
     return _run(args, job, args.job.parent, out, names, metric=args.metric)
 
 
 def _stage(args: argparse.Namespace) -> int:
+    from lce_workbench.core import jobfile
+    from lce_workbench.outputs import read_manifest
+
     read_manifest(args.folder)
     return _run(args, jobfile.load(args.folder / "job.toml"), args.folder, args.folder, [args.command])
 
@@ -184,10 +204,12 @@ def _stage(args: argparse.Namespace) -> int:
 def _run(
     args: argparse.Namespace, job: Job, base: Path, out: Path, names: list[str], *, metric: Path | None = None
 ) -> int:
+    from lce_workbench.pipeline import build
+
     progress, close = _progress(args)
     scheduler = getattr(args, "scheduler", None)
     try:
-        code = pipeline.build(job, base, out, names, progress, metric=metric, scheduler=scheduler)
+        code = build(job, base, out, names, progress, metric=metric, scheduler=scheduler)
     finally:
         close()
     _tell(args, out, names, code)
@@ -196,6 +218,8 @@ def _run(
 
 def _tell(args: argparse.Namespace, out: Path, names: list[str], code: int) -> None:
     """Say what was found and where the files are; what the checks measured without complaint stands in the manifest."""
+    from lce_workbench.outputs import read_manifest
+
     records = [r for r in read_manifest(out)["findings"] if r["stage"] in names]
     if getattr(args, "json", False):
         print(json.dumps({"out": str(out), "exit_code": code, "findings": records}))
@@ -209,12 +233,15 @@ def _tell(args: argparse.Namespace, out: Path, names: list[str], code: int) -> N
 
 
 def _study(args: argparse.Namespace) -> int:
+    from lce_workbench.studies import SAMPLES, estimate, study
+
+    samples = SAMPLES if args.samples is None else args.samples
     quiet = getattr(args, "quiet", False) or getattr(args, "json", False)
     if not quiet:
-        print(f"study {args.name}: {estimate(args.folder, args.samples)}", file=sys.stderr)
+        print(f"study {args.name}: {estimate(args.folder, args.name, samples)}", file=sys.stderr)
     progress, close = _progress(args)
     try:
-        found = study(args.folder, args.name, args.samples, scheduler=args.scheduler, progress=progress)
+        found = study(args.folder, args.name, samples, scheduler=args.scheduler, progress=progress)
     finally:
         close()
     if getattr(args, "json", False):
@@ -225,6 +252,7 @@ def _study(args: argparse.Namespace) -> int:
 
 
 def _verify(args: argparse.Namespace) -> int:
+    from lce_workbench.outputs import has_error
     from lce_workbench.verify import verify
 
     progress, close = _progress(args)
@@ -250,6 +278,8 @@ def _plate(args: argparse.Namespace) -> int:
 
 
 def _align(args: argparse.Namespace) -> int:
+    from lce_workbench.core import align
+
     found = align.fit(align.read(args.readings))
     numbers = align.told(found)
     if getattr(args, "json", False):
@@ -262,6 +292,8 @@ def _align(args: argparse.Namespace) -> int:
 
 
 def _feasibility(args: argparse.Namespace) -> int:
+    from lce_workbench.core import feasibility, jobfile
+
     progress, close = _progress(args)
     try:
         found = feasibility.survey(jobfile.load(args.job, args.settings), args.job.parent, progress)
@@ -275,6 +307,12 @@ def _feasibility(args: argparse.Namespace) -> int:
 
 
 def _new(args: argparse.Namespace) -> int:
+    from lce_solver.cut import handles
+    from lce_solver.surface import boundary_loops, load
+    from lce_workbench.core import jobfile
+    from lce_workbench.core.job import Job, Target
+    from lce_workbench.outputs import told
+
     target, out = args.target, args.out or args.target.with_suffix(".toml")
     surface, findings = load(target, cuts=True)
     cuts = not (boundary_loops(surface.faces) and handles(surface) == 0)
@@ -301,6 +339,8 @@ def _relative(path: Path, folder: Path) -> str:
 
 def _progress(args: argparse.Namespace) -> tuple[Progress, Callable[[], None]]:
     """The progress callback and how to end it: JSON lines, a bar on a terminal, or a line per stage."""
+    from lce_solver.types import silent
+
     if getattr(args, "json", False):
         return _json_line, lambda: None
     if getattr(args, "quiet", False):

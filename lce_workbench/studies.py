@@ -81,8 +81,9 @@ def _require(name: str, samples: int) -> None:
         raise InputError(msg)
 
 
-def estimate(out: Path, samples: int) -> str:
+def estimate(out: Path, name: str, samples: int) -> str:
     """What a study of so many samples costs, told before it starts."""
+    _require(name, samples)
     triangles = len(read_design(out / "design.npz").theta)
     seconds = SECONDS * samples * triangles / 1000
     return f"{samples} samples of {triangles} triangles, about {seconds:.0f} s of one processor in all"

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from lce_solver.errors import InputError
 from lce_solver.types import Floats
@@ -91,7 +91,7 @@ def fit(readings: Readings) -> Alignment:
     covariance = np.linalg.inv(rows.T @ rows)
     found = covariance @ (rows.T @ measured)
     misfit, freedom = float(np.sum((rows @ found - measured) ** 2)), len(measured) - 4
-    unlikely = freedom > 0 and bool(chi2.sf(misfit, freedom) < CONTRADICTION)
+    unlikely = freedom > 0 and bool(chdtrc(freedom, misfit) < CONTRADICTION)
     worst, gradient = _worst(found, readings.sheet)
     variances = [*np.diag(covariance), gradient @ covariance @ gradient]
     halves = CONFIDENCE * np.sqrt(variances)

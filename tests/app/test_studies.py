@@ -90,7 +90,7 @@ def test_the_table_counts_what_the_samples_say(designed):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["study", "twists", "."], "invalid choice"),
+        (["study", "twists", "."], "'twists' is unknown; known are robustness"),
         (["study", "twist", "DIR", "--samples", "3"], "--samples 3 is fewer than the 5 values of the study twist"),
         (["study", "twist", "/nowhere"], "is not a readable design"),
     ],

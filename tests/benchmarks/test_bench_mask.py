@@ -3,9 +3,12 @@
 python -m pytest tests/benchmarks/test_bench_mask.py -o addopts=--import-mode=importlib --benchmark-only
 """
 
+import itertools
+import re
 import subprocess
 import sys
 import time
+from collections import Counter
 from pathlib import Path
 
 import gdstk
@@ -15,13 +18,15 @@ import pytest
 from processes import environment, start
 from sheets import b20
 
+from lce_workbench.cad.instances import write_channels
+from lce_workbench.cad.part21 import part21
 from lce_workbench.core.channels import ChannelField, hatch
 from lce_workbench.core.domains import PLATES
 from lce_workbench.core.frame import arrange
 from lce_workbench.core.job import Job
-from lce_workbench.core.mask import compose
+from lce_workbench.core.mask import LAYERS, WrittenChannels, compose
 from lce_workbench.core.mask_checks import check
-from lce_workbench.export import EXPORTERS, gdsii
+from lce_workbench.export import EXPORTERS, cif, gdsii
 
 JOB = Job()
 SAMPLE = 40
@@ -183,3 +188,127 @@ def test_wafer(benchmark, tmp_path):
     assert size > 31e6 * 64
     assert megabytes < 500
     assert seconds < 30
+
+
+PLATE = "top"
+
+
+@pytest.fixture(scope="module")
+def written(sheet, tmp_path_factory):
+    """The top plate of B20 in every format, and its channels as solids."""
+    domains, frame = sheet
+    folder, field = tmp_path_factory.mktemp("b20"), ChannelField(domains, PLATE, JOB.channels)
+    for name, write in EXPORTERS.items():
+        write(compose(frame, field, JOB), folder / f"b20.{name}")
+    with part21(folder / "b20.step") as out:
+        write_channels(out, field, JOB.sheet.thickness, "mapped")
+    return folder, field
+
+
+def read(path):
+    """A file as KLayout reads it, 1 nm grid, and the layer of each of our names."""
+    options = kdb.LoadLayoutOptions()
+    options.dxf_unit, options.dxf_dbu, options.dxf_polyline_mode = 1.0, 0.001, 2
+    options.dxf_keep_layer_names, options.cif_dbu = True, 0.001
+    layout = kdb.Layout()
+    layout.read(str(path), options)
+    kinds = [(layout.get_info(index), index) for index in layout.layer_indexes()]
+    names = {name: {name, cif.LAYERS[name]} for name in LAYERS}
+    return layout, {n: i for n, k in LAYERS.items() for info, i in kinds if info.layer == k or info.name in names[n]}
+
+
+def tiled_xor(one, other, tile=400, threads=2):
+    """Polygons of the parts where two files differ on any layer by a nanometre or more: KLayout, tile by tile [um]."""
+    found = {}
+    (first, ours), (second, theirs) = read(one), read(other)
+    assert ours.keys() == theirs.keys()
+    for name in ours:
+        processor = kdb.TilingProcessor()
+        processor.dbu, processor.threads = 0.001, threads
+        processor.tile_size(tile, tile)
+        for word, layout, layers in (("a", first, ours), ("b", second, theirs)):
+            processor.input(word, layout, layout.top_cell().cell_index(), layers[name])
+        found[name] = kdb.Region()
+        processor.output("found", found[name])
+        processor.queue("_output(found, a ^ b)")
+        processor.execute("xor")
+    return {name: region.count() for name, region in found.items()}
+
+
+def test_xor_of_two_formats(benchmark, written):
+    """GDSII and OASIS of B20 differ nowhere by a nanometre."""
+    folder, _ = written
+    found = benchmark.pedantic(tiled_xor, (folder / "b20.gds", folder / "b20.oas"), rounds=1)
+    assert set(found) >= set(LAYERS) - {"SEAM"}
+    assert sum(found.values()) == 0
+
+
+@pytest.mark.parametrize("name", EXPORTERS)
+def test_counts_and_areas(benchmark, written, name):
+    """KLayout counts in every format what our integers have: polygons and area of the channels, to the square nm."""
+    folder, field = written
+    layout, layers = benchmark.pedantic(read, (folder / f"b20.{name}",), rounds=1)
+    found = kdb.Region(layout.top_cell().begin_shapes_rec(layers["CHANNELS"]))
+    found.merged_semantics = False
+    benchmark.extra_info |= {"channels": found.count(), "square_mm": found.area() * 1e-12}
+    assert (found.count(), found.area()) == totals_of(field)
+
+
+def totals_of(field):
+    """Channels of a plate, and their area as written [nm2]."""
+    count, doubled = 0, 0
+    for p in WrittenChannels(field):
+        a, b = (p[:, 2] - p[:, 0]).astype(np.int64), (p[:, 3] - p[:, 1]).astype(np.int64)
+        count, doubled = count + len(p), doubled + int(np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]))
+    return count, doubled / 2
+
+
+def test_volume_of_the_solids(benchmark, written):
+    """As many solids in STEP as polygons; their volume / depth is the written area to the rounding of the grid."""
+    folder, field = written
+    lengths = benchmark.pedantic(placed, (folder / "b20.step",), rounds=1)
+    count, area = totals_of(field)
+    exact = sum(um * number for um, number in lengths.items()) * JOB.channels.width_um * 1e6
+    spread = np.sqrt(sum(um**2 * number for um, number in lengths.items()) / 12) * 1e3  # each end by sqrt(1/12) nm
+    benchmark.extra_info |= {"difference": f"{area / exact - 1:.2g}", "predicted": f"{spread / exact:.2g}"}
+    assert sum(lengths.values()) == count
+    assert abs(area - exact) < 4 * spread < 1e-5 * exact
+
+
+def placed(path):
+    """How often a box of each length [um] is placed in a STEP file, by its statements."""
+    text = path.read_text("ascii")
+    solids = dict(re.findall(r"(#\d+)=MANIFOLD_SOLID_BREP\('channel_([\d.]+)_um'", text))
+    shapes = dict(re.findall(r"(#\d+)=ADVANCED_BREP_SHAPE_REPRESENTATION\('',\(#13,(#\d+)\)", text))
+    maps = dict(re.findall(r"(#\d+)=REPRESENTATION_MAP\(#13,(#\d+)\)", text))
+    uses = Counter(found[1] for found in re.finditer(r"=MAPPED_ITEM\('',(#\d+),", text))
+    lengths = Counter()
+    for use, number in uses.items():
+        lengths[float(solids[shapes[maps[use]]])] += number
+    return lengths
+
+
+def test_two_hundred_domains_by_klayout(benchmark, sheet, written):
+    """Width within 2 nm, direction within a thousandth of a degree, all channels there: of 200 random domains."""
+    domains, _ = sheet
+    layout, layers = read(written[0] / "b20.gds")
+    picked = np.random.default_rng(8).choice(len(domains), 200, replace=False)
+    found = benchmark.pedantic(lambda: [measured(layout, layers, k) for k in picked], rounds=1)
+    widths, angles, counts = (np.array(column) for column in zip(*found, strict=True))
+    error = np.degrees(np.abs(np.angle(np.exp(2j * (angles - domains.written(PLATE)[picked])))) / 2)
+    benchmark.extra_info |= {"degrees": f"{error.max():.2g}", "nm": f"{np.abs(widths - 1000).max():.2g}"}
+    assert np.array_equal(counts, written[1].counts[picked])
+    assert np.abs(widths - 1000).max() < 2
+    assert error.max() < 1e-3
+
+
+def measured(layout, layers, domain):
+    """Worst width [nm], direction [rad] and number of the channels inside one domain's border, by KLayout."""
+    border = next(itertools.islice(layout.top_cell().shapes(layers["DOMAINS"]).each(), int(domain), None)).polygon
+    box = kdb.Region(layout.top_cell().begin_shapes_rec_touching(layers["CHANNELS"], border.bbox()))
+    box.merged_semantics = False
+    channels = list(box.inside(kdb.Region(border)).each())
+    sides = [max(polygon.each_edge(), key=kdb.Edge.length) for polygon in channels]
+    widths = [p.area() / np.hypot(side.dx(), side.dy()) for p, side in zip(channels, sides, strict=True)]
+    turn = sum(complex(side.dx(), side.dy()) ** 2 for side in sides)
+    return max(widths, key=lambda width: abs(width - 1000)), np.angle(turn) / 2, len(channels)

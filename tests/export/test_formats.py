@@ -1,5 +1,7 @@
 """All formats hold the same polygons: read back by KLayout and gdstk, compared as integers."""
 
+from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 
 import ezdxf
@@ -10,7 +12,7 @@ import pytest
 from sheets import PLAIN, both_masks, design
 
 from lce_workbench.core.digits import billionths, hexadecimals, integers, thousandths
-from lce_workbench.core.domains import partition
+from lce_workbench.core.domains import PLATES, partition
 from lce_workbench.core.mask import LAYERS, Mask
 from lce_workbench.export import EXPORTERS, cif, dxf, oasis
 
@@ -35,10 +37,17 @@ def region(found, name):
     for index in found.layer_indexes():
         info = found.get_info(index)
         if info.layer == LAYERS[name] or info.name in names:
-            polygons = kdb.Region(found.top_cell().begin_shapes_rec(index))
+            polygons = kdb.Region()  # a copy, which outlives the layout
+            polygons.insert(found.top_cell().begin_shapes_rec(index))
             polygons.merged_semantics = False
             return polygons
     return kdb.Region()
+
+
+def regions(path):
+    """All layers of a file."""
+    found = layout(path)
+    return {name: region(found, name) for name in LAYERS}
 
 
 @pytest.fixture(scope="module")
@@ -53,16 +62,31 @@ def files(tmp_path_factory):
     return folder, masks
 
 
-@pytest.mark.parametrize("plate", ["bottom", "top"])
-@pytest.mark.parametrize("name", [name for name in EXPORTERS if name != "gds"])
-def test_no_nanometre_differs_from_the_gds(files, plate, name):
-    folder, _ = files
-    golden, other = layout(folder / f"{plate}.gds"), layout(folder / f"{plate}.{name}")
+@pytest.fixture(scope="module")
+def read(files):
+    """Every file as KLayout reads it."""
+    return {(plate, name): regions(files[0] / f"{plate}.{name}") for plate in files[1] for name in EXPORTERS}
+
+
+@pytest.mark.parametrize("plate", PLATES)
+@pytest.mark.parametrize("pair", [*combinations(EXPORTERS, 2)], ids="-".join)
+def test_no_nanometre_differs_between_two_formats(read, plate, pair):
+    one, other = (read[plate, name] for name in pair)
     for layer in LAYERS:
-        a, b = region(golden, layer), region(other, layer)
+        a, b = one[layer], other[layer]
         assert a.count() > 0
         assert (a.count(), a.area()) == (b.count(), b.area())
         assert (a ^ b).is_empty()
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+def test_a_corner_that_is_off_by_a_nanometre_is_seen(files, read, tmp_path, layer):
+    mask = files[1]["top"]
+    moved = np.concatenate([*mask.layers[layer]])
+    moved[-1, 0] += (0, 1)
+    EXPORTERS["oas"](replace(mask, layers={**mask.layers, layer: (moved,)}), tmp_path / "moved.oas")
+    found = regions(tmp_path / "moved.oas")
+    assert [name for name in LAYERS if not (found[name] ^ read["top", "gds"][name]).is_empty()] == [layer]
 
 
 def test_gdstk_reads_the_oasis(files):
