@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lce_solver.types import Finding, Floats, Severity
+from lce_solver.types import Finding, Severity
+from lce_workbench.cad.mates import gauges, mated
 from lce_workbench.cad.reread import channels_in, solids_in, tally, volume_of
 from lce_workbench.cad.solids import solid
 from lce_workbench.cad.step import CHANNEL_FILES, files, stored_as
 from lce_workbench.core.cell import Cell
 from lce_workbench.core.channels import Channels
-from lce_workbench.core.domains import PLATES, Plate
+from lce_workbench.core.domains import Plate
 from lce_workbench.core.frame import Frame
 from lce_workbench.core.job import Job
-from lce_workbench.core.marks import MARKS
 from lce_workbench.core.prism import Prism, bodies, together
 from lce_workbench.core.units import NM, UM
 
@@ -33,9 +33,6 @@ READABLE = 20_000
 
 HOLES = 200
 """Holes of a face that is read back by a kernel, whose time grows with their square; larger ones are counted."""
-
-GAUGE = 0.2
-"""Half the side of the square that holds the gauge of a cluster [mm]."""
 
 
 def check(
@@ -54,6 +51,7 @@ def check(
         _interference(cell.parts, shapes),
         _gap(shapes, job),
         _marks(cell, frame),
+        _mates(cell, frame, job),
         *(_parts_in(folder / name, pick(cell)) for name, pick in files(job).items() if name.endswith(".step")),
     ]
     for name, plate in CHANNEL_FILES.items():
@@ -112,27 +110,19 @@ def _gap(shapes: Mapping[str, cq.Solid], job: Job) -> Finding:
 
 
 def _marks(cell: Cell, frame: Frame) -> Finding:
-    """Distance of the centres of both halves of the gauge, in each corner."""
-    lands = {part.name: part for part in cell.parts}
-    at = frame.marks + np.array(MARKS["gauge"].at) * UM
-    centres = [np.array([_centre(lands[f"{plate}_land"], corner) for corner in at]) for plate in PLATES]
-    off = np.linalg.norm(centres[1] - centres[0], axis=1)
-    corner = int(np.argmax(off))
-    return judged(
-        "cad_marks",
-        "the gauges of both plates are apart by up to",
-        float(off[corner] / NM),
-        1.0,
-        unit="nm",
-        where=f"corner {corner}",
-    )
+    """Distance of the centres of both halves of the gauge, at each cluster."""
+    bottom, top = gauges(cell, frame)
+    off = np.linalg.norm(top - bottom, axis=1)
+    at = int(np.argmax(off))
+    text = "the gauges of both plates are apart by up to"
+    return judged("cad_marks", text, float(off[at] / NM), 1.0, unit="nm", where=f"corner {at}")
 
 
-def _centre(land: Prism, corner: Floats) -> Floats:
-    """Centre of the box of the recesses around a point; far away if there are none."""
-    near = [ring for ring in land.holes if np.all(np.abs(ring - corner) < GAUGE)]
-    points = np.concatenate(near) if near else np.full((1, 2), 1e3 * (land.z0 + 1))
-    return np.asarray((points.min(axis=0) + points.max(axis=0)) / 2)
+def _mates(cell: Cell, frame: Frame, job: Job) -> Finding:
+    """How far parts that are mated by their faces and marks lie off their place in the cell."""
+    worst, where = mated(cell, frame, job)
+    text = "the parts, put together by their faces and marks, lie off their place by up to"
+    return judged("cad_mates", text, worst / NM, 1.0, unit="nm", where=where)
 
 
 def _parts_in(path: Path, prisms: Sequence[Prism]) -> Finding:

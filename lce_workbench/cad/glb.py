@@ -47,9 +47,8 @@ def assembly(name: str, prisms: Sequence[Prism]) -> cq.Assembly:
     root = cq.Assembly(name=name)
     parents = {"": root}
     for label, stack in bodies(prisms).items():
-        group = stack[0].group
-        if group not in parents:
-            root.add(cq.Assembly(name=group))
-            parents[group] = root.children[-1]
-        parents[group].add(solid(stack), name=label, color=cq.Color(*stack[0].colour, stack[0].opacity))
+        parent = parents.setdefault(stack[0].group, cq.Assembly(name=stack[0].group))
+        parent.add(solid(stack), name=label, color=cq.Color(*stack[0].colour, stack[0].opacity))
+    for group in (parent for parent in parents.values() if parent is not root):
+        root.add(group)  # filled, for a copy is taken, whose parts become the root's by their paths
     return root

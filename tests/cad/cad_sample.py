@@ -7,11 +7,14 @@ from dataclasses import replace
 import numpy as np
 
 from lce_solver.types import Floats
+from lce_workbench.core import marks
 from lce_workbench.core.cell import Cell, assemble, select
 from lce_workbench.core.channels import Channels, hatch
 from lce_workbench.core.domains import PLATES, Domains, Plate
-from lce_workbench.core.frame import arrange
+from lce_workbench.core.frame import Frame, arrange
 from lce_workbench.core.job import Job, Output, Plates, Sheet
+from lce_workbench.core.marks import MARKS, Wanted
+from lce_workbench.core.shapes import moved
 
 PITCH = 0.03
 """Side of the square that two domains share [mm]."""
@@ -54,6 +57,18 @@ def cell(chosen: tuple[int, ...] = (24, 25), gap_um: float = 100.0, plates: Plat
     bottom = np.concatenate([cross(*centre) for centre in frame.marks[:4]])
     top = np.concatenate([bottom, cross(frame.marks[0, 0], 0.0)])
     return assemble(frame, wanted, sheet, {"bottom": bottom, "top": top}, hatched(sheet, wanted))
+
+
+def gauged(plates: Plates | None = None) -> tuple[Cell, dict[Plate, list[Channels]], Frame, Job]:
+    """A cell that `check` passes, with the gauge of every cluster: cell, channel solids, frame and job."""
+    sheet, wanted = domains(), replace(job((24, 25)), plates=plates or Plates())
+    frame, channels, at = arrange(sheet.vertices, wanted), hatched(sheet, wanted), MARKS["gauge"].at
+    drawn = {
+        plate: np.concatenate([moved(draw(Wanted(wanted.marks)), *at) + corner for corner in frame.marks])
+        for plate, draw in (("bottom", marks.windows), ("top", marks.cross))
+    }
+    built = assemble(frame, wanted, sheet, drawn, channels)
+    return built, {plate: [select(part, built.chosen)] for plate, part in channels.items()}, frame, wanted
 
 
 def solids(chosen: tuple[int, ...] = (24, 25)) -> dict[Plate, list[Channels]]:

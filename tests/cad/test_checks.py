@@ -4,30 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cad.cad_sample import PITCH, domains, hatched, job
+from cad.cad_sample import PITCH, gauged
 
 from lce_solver.types import Severity
 from lce_workbench.cad.checks import check
 from lce_workbench.cad.step import write_cad
-from lce_workbench.core.cell import assemble, select
-from lce_workbench.core.frame import arrange
-from lce_workbench.core.marks import MARKS, Wanted, cross, windows
-from lce_workbench.core.marks import moved as moved_mark
+from lce_workbench.core.cell import select
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     """Cell, channels, frame, job and folder with the files: a sheet with the gauges at its corners."""
-    sheet, wanted = domains(), job((24, 25))
-    frame = arrange(sheet.vertices, wanted)
-    channels = hatched(sheet, wanted)
-    at = MARKS["gauge"].at
-    drawn = {
-        plate: np.concatenate([moved_mark(draw(Wanted(wanted.marks)), *at) + corner for corner in frame.marks])
-        for plate, draw in (("bottom", windows), ("top", cross))
-    }
-    cell = assemble(frame, wanted, sheet, drawn, channels)
-    solids = {plate: [select(part, cell.chosen)] for plate, part in channels.items()}
+    cell, solids, frame, wanted = gauged()
     folder = tmp_path_factory.mktemp("checked")
     write_cad(cell, solids, wanted, folder)
     return cell, solids, frame, wanted, folder
@@ -48,7 +36,14 @@ def errors(made, **changes):
 def test_a_sound_cell_has_no_error_and_is_measured(made):
     found = check(*made)
     assert all(f.severity is Severity.INFO for f in found)
-    assert {f.check for f in found} == {"cad_kernel", "cad_interference", "cad_gap", "cad_marks", "cad_step"}
+    assert {f.check for f in found} == {
+        "cad_kernel",
+        "cad_interference",
+        "cad_gap",
+        "cad_marks",
+        "cad_mates",
+        "cad_step",
+    }
     assert len([f for f in found if f.check == "cad_step"]) == 10
 
 
@@ -65,18 +60,21 @@ def moved(cell, name, shift=(0.0, 0.0), dz=0.0):
 
 
 def test_a_plate_two_nanometres_too_high_is_seen(made, unread):
-    assert errors(made, cell=moved(made[0], "top_", dz=2e-6)) == {"cad_gap"}
+    assert errors(made, cell=moved(made[0], "top_", dz=2e-6)) == {"cad_gap", "cad_mates top_plate"}
     assert errors(made, cell=moved(made[0], "top_", dz=0.5e-6)) == set()
 
 
 def test_marks_two_nanometres_apart_are_seen(made, unread):
-    assert errors(made, cell=moved(made[0], "top_land", (2e-6, 0.0))) == {"cad_marks corner 0"}
+    assert errors(made, cell=moved(made[0], "top_land", (2e-6, 0.0))) == {
+        "cad_marks corner 0",
+        "cad_mates top_plate",
+    }
 
 
 def test_parts_that_share_volume_are_seen(made, unread):
     part = {p.name: p.outline[:, 0] for p in made[0].parts}
     cell = moved(made[0], "spacer_left", (part["sheet"].min() - part["spacer_left"].max() + 0.05, 0.0))
-    assert errors(made, cell=cell) == {"cad_interference spacer_left and sheet"}
+    assert errors(made, cell=cell) == {"cad_interference spacer_left and sheet", "cad_mates spacer_left"}
 
 
 def test_a_file_that_lacks_a_part_is_seen(made, tmp_path):
