@@ -15,7 +15,7 @@ from scipy import sparse
 from scipy.sparse.csgraph import dijkstra
 
 from lce_solver import judge
-from lce_solver.geometry import edge_lengths, face_areas, mean_edge
+from lce_solver.geometry import edge_lengths, evened, face_areas, mean_edge
 from lce_solver.metric import Stop, flatten, lay_flat
 from lce_solver.topology import boundary_loops, edge_table, edges, fans, half_edges
 from lce_solver.types import Flattening, Floats, Ints, Material, Surface
@@ -159,13 +159,7 @@ def _next(surface: Surface, flat: Flattening, material: Material) -> Floats:
 def _error(surface: Surface, flat: Flattening, material: Material) -> Floats:
     """(n_v,) the stretches' relative error, averaged over a few edges."""
     errors = judge.stretch_errors(judge.stretches(surface, flat.uv, material), material)
-    value = np.sqrt((errors**2).mean(axis=1))
-    weight, corner = np.repeat(face_areas(surface), 3), surface.faces.ravel()
-    whole = np.bincount(corner, weight)
-    for _ in range(EVEN):
-        at_vertex = np.bincount(corner, weight * np.repeat(value, 3)) / whole
-        value = at_vertex[surface.faces].mean(axis=1)
-    return np.asarray(at_vertex)
+    return evened(surface, np.sqrt((errors**2).mean(axis=1)), EVEN)
 
 
 def _judged(surface: Surface, material: Material) -> tuple[Flattening, float]:

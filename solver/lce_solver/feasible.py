@@ -17,7 +17,7 @@ import igl
 import numpy as np
 
 from lce_solver.errors import SolverError
-from lce_solver.geometry import face_areas
+from lce_solver.geometry import evened
 from lce_solver.topology import boundary_loops
 from lce_solver.twist import bending_tensor
 from lce_solver.types import Finding, Floats, Ints, Material, Severity, Surface
@@ -56,13 +56,7 @@ def gaussian_curvature(surface: Surface) -> Floats:
     form = bending_tensor(surface)
     squares = np.einsum("fij,fji->f", form, form)
     value: Floats = (np.trace(form, axis1=1, axis2=2) ** 2 - squares) / 2
-    weight = np.repeat(face_areas(surface), 3)
-    corner = surface.faces.ravel()
-    whole = np.bincount(corner, weight)
-    for _ in range(EVEN):
-        at_vertex = np.bincount(corner, weight * np.repeat(value, 3)) / whole
-        value = at_vertex[surface.faces].mean(axis=1)
-    return np.asarray(at_vertex)
+    return evened(surface, value, EVEN)
 
 
 def longest(curvature: float, material: Material) -> float:

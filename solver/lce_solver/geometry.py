@@ -50,5 +50,15 @@ def vertex_normals(surface: Surface) -> Floats:
     return _unit(total)
 
 
+def evened(surface: Surface, values: Floats, rounds: int) -> Floats:
+    """(n_v,) means at the vertices of ``values`` (n_f,) on the triangles, averaged ``rounds`` times over an edge."""
+    weight, corner = np.repeat(face_areas(surface), 3), surface.faces.ravel()
+    whole = np.bincount(corner, weight)
+    for _ in range(rounds):
+        at_vertex = np.bincount(corner, weight * np.repeat(values, 3)) / whole
+        values = at_vertex[surface.faces].mean(axis=1)
+    return np.asarray(at_vertex)
+
+
 def _unit(vectors: Floats) -> Floats:
     return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))

@@ -1,4 +1,4 @@
-"""The judge of a flattening. It shares no code with the solver: singular values come from an SVD."""
+"""The judge of a flattening. It shares no code with the solver: it looks at the map sheet -> target, edge by edge."""
 
 from __future__ import annotations
 
@@ -7,10 +7,16 @@ from numpy.typing import NDArray
 
 from lce_solver.types import Floats, Ints, Material, Surface
 
+SINGULAR = 1e-100
+"""Stands for the determinant of a triangle without area in the plane, whose stretches are endless."""
+
 
 def jacobians(surface: Surface, uv: Floats) -> Floats:
     """(n_f, 3, 2) derivative of the map sheet -> target on each triangle (the paper's J_f)."""
-    inverse = np.linalg.pinv(_edges(uv, surface.faces))
+    (a, b), (c, d) = np.moveaxis(_edges(uv, surface.faces), 0, -1)
+    determinant = a * d - b * c
+    adjugate = np.moveaxis(np.array([[d, -b], [-c, a]]), -1, 0)
+    inverse = adjugate / np.where(determinant == 0, SINGULAR, determinant)[:, None, None]
     return np.asarray(_edges(surface.vertices, surface.faces) @ inverse, dtype=np.float64)
 
 
@@ -23,9 +29,16 @@ def stretches(surface: Surface, uv: Floats, material: Material) -> Floats:
 
 
 def principal(jacobian: Floats, material: Material) -> Floats:
-    """(n_f, 2) singular values of ``jacobian`` (n_f, 3, 2), along and across the director."""
-    large_first = np.asarray(np.linalg.svd(jacobian, compute_uv=False), dtype=np.float64)
-    return large_first if material.along > material.across else large_first[:, ::-1]
+    """(n_f, 2) singular values of ``jacobian`` (n_f, 3, 2), along and across the director.
+
+    From the metric's trace and difference the larger one, and from the area the smaller: ten times as fast as an SVD.
+    """
+    u, v = np.moveaxis(jacobian, 2, 0)
+    uu, vv, uv = (np.einsum("fi,fi->f", p, q) for p, q in ((u, u), (v, v), (u, v)))
+    large = np.sqrt((uu + vv) / 2 + np.hypot((uu - vv) / 2, uv))
+    area = np.linalg.norm(np.cross(u, v), axis=1)
+    small = area / np.maximum(large, SINGULAR)
+    return np.stack([large, small] if material.along > material.across else [small, large], axis=1)
 
 
 def stretch_errors(stretch: Floats, material: Material) -> Floats:

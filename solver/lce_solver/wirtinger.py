@@ -98,12 +98,12 @@ def energy(
     more : a further term, from (2 n_f,) ``(a, b)`` to its value and its derivative by them.
     """
     ab = op.derivative @ w
-    size = np.sqrt(ab.real**2 + ab.imag**2)
-    alpha, beta = moduli(stretches)
-    half = len(size) // 2
-    excess = np.concatenate([size[:half] - alpha, size[half:] - beta])
+    size = np.abs(ab)
+    excess = size - np.repeat(moduli(stretches), len(size) // 2)
     force = op.weight * excess
-    value, slope = float(np.einsum("i,i->", force, excess)), 2 * force / np.maximum(size, TINY) * ab
+    value = float(np.einsum("i,i->", force, excess))
+    force /= np.maximum(size, TINY)
+    slope = ab * (2 * force)
     if more is not None:
         further, steeper = more(ab)
         value, slope = value + further, slope + steeper

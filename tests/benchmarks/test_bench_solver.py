@@ -18,13 +18,15 @@ from nasty import check_ends
 
 from lce_solver import judge
 from lce_solver.contest import compete
+from lce_solver.descent import start
 from lce_solver.geometry import face_areas, mean_edge
-from lce_solver.metric import Stop, flatten, lay_flat
+from lce_solver.metric import Stop, descend, flatten, lay_flat, objective
 from lce_solver.mirror import even_mesh
 from lce_solver.subdivision import refine
 from lce_solver.surface import load
 from lce_solver.surfaces import SURFACES
 from lce_solver.types import Material, Status
+from lce_solver.wirtinger import stretched
 
 PEER = Material(0.58, float(-np.log(1.08) / np.log(0.58)))
 """The stretches 0.58 and 1.08 of the public comparison."""
@@ -46,7 +48,7 @@ TARGETS = {"face": lambda: SURFACES["face"](0.02), **{name: lambda name=name: re
 
 
 def race(surface, angle):
-    """Iterations and seconds of both methods to within 1 % of the energy that they end at, and that energy."""
+    """Iterations and seconds of both methods to within 1 % of the energy that each ends at, and that energy."""
     rigid = lay_flat(surface)
     stops = {"lbfgs": Stop(1e-8), "local_global": Stop(1e-7, 8000)}
     runs = {method: flatten(rigid, STRETCHES, angle, stop, method=method) for method, stop in stops.items()}
@@ -79,31 +81,41 @@ def test_time_to_one_percent(benchmark, name, capsys):
     assert np.exp(np.mean(np.log(ratios))) > 4
 
 
-@pytest.mark.parametrize("name", REAL)
-def test_search_against_local_global(benchmark, name, capsys):
-    """Twelve starts to within 1 % of the lowest energy that either method finds, or as near as local/global comes.
+BUDGET = 20
+"""So many times our time local/global may spend."""
+TURN = 100
+"""Iterations of each start of local/global before it is the next start's turn."""
 
-    Local/global runs every start of its own, each stopped as soon as it is within 1 % of its own end: nobody could know
-    that beforehand. Ours is the whole competition as it is used, to its last tolerance.
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_search_against_local_global(benchmark, name, capsys):
+    """Processor time until a sheet within 1 % of the lowest energy is found, from the same twelve starts.
+
+    Ours is the whole competition, to its last tolerance. Local/global goes on with all starts by turns, because nobody
+    knows which of them will be best, until one is within 1 % of the lowest energy that we found or `BUDGET` times our
+    time is spent; then the ratio is a lower bound.
     """
-    surface = real(name)
-    rigid, angles = lay_flat(surface), np.arange(12) * np.pi / 12
+    surface = TARGETS[name]()
     begin = time.process_time()
     _, starts = benchmark.pedantic(lambda: compete(surface, PEER), rounds=1)
-    ours, best = time.process_time() - begin, min(start.energy for start in starts if start.status is Status.CONVERGED)
-    theirs, ends = 0.0, []
-    for angle in angles:
-        history = flatten(rigid, STRETCHES, angle, Stop(1e-7, 8000), method="local_global").energy
-        count = int(np.argmax(history <= 1.01 * history[-1]))
+    ours, best = time.process_time() - begin, min(start.energy for start in starts)
+    rigid = lay_flat(surface)
+    goal = objective(rigid.operator, STRETCHES)
+    runs = [start(stretched(rigid.w, STRETCHES, angle)) for angle in np.arange(12) * np.pi / 12]
+    theirs, lowest, count = 0.0, np.inf, 0
+    while lowest > 1.01 * best and theirs < BUDGET * ours:
+        count += TURN
         begin = time.process_time()
-        flatten(rigid, STRETCHES, angle, Stop(0.0, count), method="local_global")
-        theirs, ends = theirs + time.process_time() - begin, [*ends, history[-1]]
+        runs = [descend(goal, run, Stop(0.0, count), method="local_global") for run in runs]
+        theirs += time.process_time() - begin
+        lowest = min(run.history[-1] for run in runs)
     with capsys.disabled():
         sys.stdout.write(
-            f"\n{name:>15} local/global {theirs:6.1f} s to E {min(ends):.4e} | ours {ours:5.1f} s to E {best:.4e} | "
-            f"{theirs / ours:5.1f} x\n"
+            f"\n{name:>15} {len(surface.faces)} triangles: ours {ours:5.1f} s to E {best:.4e} | local/global, {count} "
+            f"iterations of 12 starts, {theirs:6.1f} s to E {lowest:.4e} ({lowest / best - 1:+.1%}) | "
+            f"{'more than ' * (lowest > 1.01 * best)}{theirs / ours:.0f} x\n"
         )
-    assert theirs > 4 * ours
+    assert theirs >= BUDGET * ours
 
 
 @pytest.mark.parametrize("name", REAL)
