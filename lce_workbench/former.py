@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,9 @@ ANEW = ("domain", "gap", "partition", "channel_phase", "equilibrium")
 """How the checks begin whose findings the design stage makes anew from the job and the domains."""
 
 
-def retwist(job: Job, inputs: Sequence[Mapping[str, Any]], former: Path) -> tuple[Design, tuple[Finding, ...]]:
+def retwist(
+    job: Job, inputs: Sequence[Mapping[str, Any]], former: Path
+) -> tuple[Iterator[Design], tuple[Finding, ...]]:
     """What solving ``job`` anew would give, in seconds: flat sheet and director of ``former``, and their twist.
 
     Parameters
@@ -44,7 +46,7 @@ def retwist(job: Job, inputs: Sequence[Mapping[str, Any]], former: Path) -> tupl
     plan = retwisted(plan, form, **job.sheet.twist)
     kept = [as_finding(record) for record in manifest["findings"] if record["stage"] == "design"]
     kept = [finding for finding in kept if not finding.check.startswith(ANEW)]
-    return plan, renewed(tuple(kept), plan, job.sheet.twist_limit)
+    return iter([plan]), renewed(tuple(kept), plan, job.sheet.twist_limit)
 
 
 def _require_same_metric(former: Job, job: Job, folder: Path) -> None:

@@ -7,7 +7,7 @@ import platform
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, version
@@ -17,10 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from lce_solver.arrive import arrive
+from lce_solver.choice import arriving
 from lce_solver.compare import REACH, Comparison, Verdict, compare, placed
 from lce_solver.cut import seams
-from lce_solver.design import design, renewed
+from lce_solver.design import designs, renewed
 from lce_solver.errors import EnvironmentFault, InputError, LceError, SolverError
 from lce_solver.shell import film_of, predict, settle
 from lce_solver.types import Design, Finding, Progress, Severity, silent
@@ -153,10 +153,13 @@ def exit_code(records: Sequence[Mapping[str, Any]]) -> int:
 def run_design(run: Run) -> Findings:
     """Solve the inverse problem: `job.toml`, `design.npz`, `domains.csv`."""
     job = run.job
-    result, said = solved(run) if run.metric is None else retwist(job, inputs(job, run.base), run.metric)
-    if job.prediction.correct != "off":
-        result, told = arrive(result, job.prediction.correct, job.sheet.twist_limit, run.progress)
-        said = (*renewed(said, result, job.sheet.twist_limit), told)
+    plans, said = solved(run) if run.metric is None else retwist(job, inputs(job, run.base), run.metric)
+    if job.prediction.correct == "off":
+        result = next(plans)
+        said = (*said, *result.findings)
+    else:
+        result, told = arriving(plans, job.prediction.correct, job.sheet.twist_limit, run.progress)
+        said = (*renewed((*said, *result.findings), result, job.sheet.twist_limit), told)
     arrange(result.uv, job)  # a plate that is too small is told before anything is drawn
     (run.folder / "job.toml").write_text(jobfile.dump(rebased(job, run.base, run.folder)), encoding="utf-8")
     domains, divided = divide(result, job)
@@ -168,12 +171,12 @@ def run_design(run: Run) -> Findings:
     return (*said, *target.sized(result, job), *divided, *sheet_findings(job))
 
 
-def solved(run: Run) -> tuple[Design, Findings]:
-    """The design of the job, and what was found on the way."""
+def solved(run: Run) -> tuple[Iterator[Design], Findings]:
+    """The designs of the job, the best first, and what was found before."""
     job = run.job
     matter, said = material.resolve(job.material, run.base)
     goal, told = target.resolve(job, matter, run.base)
-    result = design(
+    plans = designs(
         goal,
         matter,
         width=job.sheet.width_mm,
@@ -184,7 +187,7 @@ def solved(run: Run) -> tuple[Design, Findings]:
         smoothing=job.solver.smoothing,
         progress=run.progress,
     )
-    return result, (*said, *told, *result.findings)
+    return plans, (*said, *told)
 
 
 def rebased(job: Job, base: Path, folder: Path) -> Job:

@@ -113,7 +113,8 @@ def _starts(_review: Review, record: Mapping[str, Any], axes: Axes) -> None:
         colour = SECOND if start["winner"] else FIRST if good else PALE
         axes.bar(start["angle"], 100 * start["score"], width=120 / len(record["starts"]), color=colour,
                  hatch="" if good else "///", edgecolor="white" if good else INK, linewidth=0.4)  # fmt: skip
-        marks = ["◆"] * start["symmetric"] + ["wins"] * start["winner"]
+        heated = [] if start["heated_pct"] is None else [f"heated: {start['heated_pct']:.2g} %"]
+        marks = ["◆"] * start["symmetric"] + heated + ["wins"] * start["winner"]
         axes.annotate(
             "\n".join(marks), (start["angle"], 100 * start["score"]), (0, 2), textcoords="offset points", ha="center"
         )
@@ -174,7 +175,8 @@ FIGURES: dict[str, Plan] = {
         "Starts that competed",
         "The lowest bar wins: error of the stretches times the share of bending that twist cannot reach. A symmetric "
         f"solution (◆) wins over lopsided ones less than {100 * FAVOUR:.0f} % better. Hatched: flipped triangles "
-        "or a crossing outline; starts that dropped out early show what they had by then.",
+        "or a crossing outline; starts that dropped out early show what they had by then. Where the corrected sheet is "
+        "heated, its distance from the target is written; if it does not arrive, the next finalist is heated too.",
         _starts,
         wanted=lambda review: bool(review.design.starts),
     ),

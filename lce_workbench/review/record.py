@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from lce_solver.compare import Verdict
-from lce_solver.contest import ranking
 from lce_solver.types import Floats, Status
 from lce_workbench import ROOT
 from lce_workbench.core import jobfile
@@ -174,20 +173,16 @@ def twist(review: Review) -> dict[str, float]:
 
 
 def starts(review: Review) -> list[dict[str, Any]]:
-    """The starts that competed; the winner is the best of those that were carried to the finest mesh."""
-    competed = review.design.starts
-    finest = max((start.triangles for start in competed), default=0)
-    last = [start for start in competed if start.triangles == finest]
-    winner = last[ranking(last)[0]] if last else None
+    """The starts that competed; the design is made of the winner."""
     return [
         {
             **asdict(start),
             "angle": short(np.degrees(start.angle)),
             "status": start.status.name.lower(),
             "score": short(start.score),
-            "winner": start is winner,
+            "heated_pct": short(start.heated_pct) if np.isfinite(start.heated_pct) else None,
         }
-        for start in competed
+        for start in review.design.starts
     ]
 
 

@@ -41,6 +41,14 @@ FAVOUR = 0.1
 """A symmetric solution wins over lopsided ones whose score is less than this better."""
 
 
+@dataclass(frozen=True, eq=False)
+class Finalist:
+    """A start that came to the job's own mesh and smoothing."""
+
+    start: Start
+    flat: Flattening
+
+
 def compete(
     surface: Surface,
     material: Material,
@@ -49,8 +57,8 @@ def compete(
     progress: Progress = silent,
     *,
     smoothing: float = 0.0,
-) -> tuple[Flattening, tuple[Start, ...]]:
-    """Minimise from stretches of the plane in ``starts`` directions and take the best.
+) -> tuple[tuple[Finalist, ...], tuple[Start, ...]]:
+    """Minimise from stretches of the plane in ``starts`` directions.
 
     The energy has many minima. The best has the smallest rms error x share of bending that twist cannot reach, among
     those that are valid (no flipped triangle, simple outline); if none is, the one with the fewest faults is returned.
@@ -62,7 +70,8 @@ def compete(
 
     Returns
     -------
-    The best flattening, and one record per start in the order of the angles, each from where it dropped out.
+    The finalists, the best first (the others are only nearly minima), valid ones only but for the first; and one record
+    per start in the order of the angles, each from where it dropped out.
     """
     meshes = levels(surface)
     reports = [_share(progress, meshes, k) for k in range(len(meshes))]
@@ -80,10 +89,13 @@ def compete(
         field = _ranked(field)[: FINALISTS[min(k, len(FINALISTS)) - 1]]
         field = _next_mesh(coarse, mesh, field, stop, smoothing=smoothing, report=_within(reports[k], 0.0, 0.3))
         records |= _records(field)
-    best, field = _finished(mesh, field, stop, smoothing, _within(reports[-1], 0.6, 1.0))
+    field = _finished(mesh, field, stop, smoothing, _within(reports[-1], 0.6, 1.0))
     records |= _records(field)
     progress("flatten", 1.0)
-    return mesh.flattening(best.found), _all_starts(records, starts, mirrored)
+    best, *others = _ranked(field)
+    left = [best, *(runner for runner in others if _faults(runner.start) == 0)]
+    finalists = tuple(Finalist(runner.start, mesh.flattening(runner.found)) for runner in left)
+    return finalists, _all_starts(records, starts, mirrored)
 
 
 Report = Callable[[float], None]
@@ -118,15 +130,13 @@ def _next_mesh(
     return result
 
 
-def _finished(
-    mesh: Mesh, field: list[Runner], stop: Stop, smoothing: float, report: Report
-) -> tuple[Runner, list[Runner]]:
-    """The winner at the job's smoothing and tolerance, and the field; the others stay at `ROUGH`."""
+def _finished(mesh: Mesh, field: list[Runner], stop: Stop, smoothing: float, report: Report) -> list[Runner]:
+    """The field at the job's smoothing; the winner to the job's tolerance, the others to `ROUGH`."""
     field = advanced(mesh, field, smoothing, _loose(stop, ROUGH), _within(report, 0.0, 0.6), last=False)
     while not (best := _ranked(field)[0]).finished:
         (done,) = advanced(mesh, [best], smoothing, stop, _within(report, 0.6, 1.0), last=True)
         field = [done if runner is best else runner for runner in field]
-    return best, field
+    return field
 
 
 def _loose(stop: Stop, tolerance: float) -> Stop:

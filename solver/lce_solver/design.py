@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from lce_solver import judge
 from lce_solver.assess import assess
 from lce_solver.bounded import FOLLOWED, cost, retwisted
-from lce_solver.contest import compete
+from lce_solver.contest import Finalist, compete
 from lce_solver.errors import InputError
 from lce_solver.family import steer
 from lce_solver.feasible import bounded
@@ -17,16 +19,23 @@ from lce_solver.geometry import area_vectors, face_areas
 from lce_solver.metric import Stop
 from lce_solver.plane import rectangle_angles, turn
 from lce_solver.twist import bending_left, second_form
-from lce_solver.types import Design, Finding, Floats, Material, Progress, Surface, line_angle, silent
+from lce_solver.types import Design, Finding, Flattening, Floats, Material, Progress, Surface, line_angle, silent
 
 SMOOTHING = 0.002
 """Takes the worst jumps of the director for no error of the stretches to speak of. Ten times as much halves the jumps
 on a real face, but the sheet then ends farther from it."""
+SAME = 1e-3
+"""Finalists whose scores differ by less than this part are one solution."""
 SIDEWAYS = 0.1
 """If less than this of the x axis is seen along the mean normal, the y axis points right instead."""
 
 
-def design(
+def design(surface: Surface, material: Material, width: float, thickness: float, **how: Any) -> Design:
+    """The best of `designs`, which says what ``how`` may be."""
+    return next(designs(surface, material, width, thickness, **how))
+
+
+def designs(
     surface: Surface,
     material: Material,
     width: float,
@@ -41,8 +50,8 @@ def design(
     max_iterations: int = 5000,
     smoothing: float = SMOOTHING,
     progress: Progress = silent,
-) -> Design:
-    """Design the flat sheet that heats into ``surface``.
+) -> Iterator[Design]:
+    """Design the flat sheet that heats into ``surface``: one of each finalist of the competition, the best first.
 
     A sheet with flipped triangles or a crossing outline comes back too, with findings of severity error: look at
     ``flattening.status`` before you call it a success.
@@ -69,8 +78,35 @@ def design(
             msg = f"the sheet's {name} is {length:g} mm; give a positive length"
             raise InputError(msg)
     stop = Stop(tolerance, max_iterations)
-    flat, competed = compete(surface, material, starts, stop, progress, smoothing=smoothing)
-    flat = steer(surface, flat, material, stop, smoothing=smoothing)
+    finalists, competed = compete(surface, material, starts, stop, progress, smoothing=smoothing)
+    for one in _distinct(finalists):
+        flat = steer(surface, one.flat, material, stop, smoothing=smoothing)
+        plan = _laid(surface, flat, material, width, thickness)
+        records = tuple(replace(start, winner=start.angle == one.start.angle) for start in competed)
+        form = second_form(plan.surface, plan.uv)
+        plan = retwisted(
+            replace(plan, starts=records),
+            form,
+            thickness,
+            twist_gain=twist_gain,
+            edge_overdrive=edge_overdrive,
+            twist_filter=twist_filter,
+            twist_limit=twist_limit,
+        )
+        yield replace(plan, findings=measured(plan, form, twist_limit))
+
+
+def _distinct(finalists: tuple[Finalist, ...]) -> list[Finalist]:
+    """Without those that are the same solution as a better one."""
+    kept: list[Finalist] = []
+    for one in finalists:
+        if all(abs(one.start.score - other.start.score) > SAME * other.start.score for other in kept):
+            kept.append(one)
+    return kept
+
+
+def _laid(surface: Surface, flat: Flattening, material: Material, width: float, thickness: float) -> Design:
+    """A flattening at real size, lying as the target is seen, yet without twist."""
     angle = sheet_angle(flat.uv, surface)
     lying = turn(flat.uv, angle)
     low, high = lying.min(axis=0), lying.max(axis=0)
@@ -78,8 +114,7 @@ def design(
     target = Surface(surface.vertices * scale, surface.faces)
     uv = (lying - (low + high) / 2) * scale
     theta = line_angle(flat.theta + angle)
-    form = second_form(target, uv)
-    result = Design(
+    return Design(
         surface=target,
         uv=uv,
         theta=theta,
@@ -88,19 +123,8 @@ def design(
         material=material,
         thickness=thickness,
         flattening=replace(flat, uv=uv, theta=theta),
-        bending_left=bending_left(form, theta, material, face_areas(target)),
-        starts=competed,
+        bending_left=bending_left(second_form(target, uv), theta, material, face_areas(target)),
     )
-    result = retwisted(
-        result,
-        form,
-        thickness,
-        twist_gain=twist_gain,
-        edge_overdrive=edge_overdrive,
-        twist_filter=twist_filter,
-        twist_limit=twist_limit,
-    )
-    return replace(result, findings=measured(result, form, twist_limit))
 
 
 def measured(result: Design, form: Floats, twist_limit: float) -> tuple[Finding, ...]:

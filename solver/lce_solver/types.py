@@ -190,6 +190,11 @@ class Start:
     """1/2 sum w_t |sigma - s|^2, w_t the area fraction, where this start ended."""
     iterations: int = 0
     """Of all its descents."""
+    winner: bool = False
+    """Whether the design is made of it."""
+    heated_pct: float = np.inf
+    """Distance from the target at which its corrected sheet, heated from flat, ends, rms [% of the diagonal]; infinite
+    for starts that were not heated."""
 
     @property
     def score(self) -> float:

@@ -50,7 +50,8 @@ def test_even_mesh_is_its_own_mirror_image():
 
 def test_symmetric_target_gets_a_symmetric_sheet():
     surface = even_mesh(FACE, 0.06)
-    flat, (start,) = compete(surface, LCE, starts=1, stop=Stop(1e-6))
+    (best,), (start,) = compete(surface, LCE, starts=1, stop=Stop(1e-6))
+    flat = best.flat
     assert start.symmetric
     twin = twins(surface)
     u, v = flat.uv.T

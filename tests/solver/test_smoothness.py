@@ -55,9 +55,9 @@ def test_smoothing_halves_the_jumps_and_costs_little():
     surface = SURFACES["face"](0.05)
     found = {}
     for smoothing in (0.0, 0.02, 0.5):
-        flat_map, starts = compete(surface, LCE, starts=2, stop=Stop(1e-6), smoothing=smoothing)
+        (best, *_), starts = compete(surface, LCE, starts=2, stop=Stop(1e-6), smoothing=smoothing)
         pairs, _ = neighbours(surface.faces)
-        first, second = flat_map.theta[pairs.T % len(surface.faces)]
+        first, second = best.flat.theta[pairs.T % len(surface.faces)]
         turn = line_angle(first - second)
         jump = np.degrees(np.percentile(np.minimum(turn, np.pi - turn), 99))
         found[smoothing] = jump, min(start.rms for start in starts)
