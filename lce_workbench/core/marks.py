@@ -45,6 +45,8 @@ BAR = 9.0
 """Width of a vernier bar [um]."""
 BARS = 10
 """Vernier bars on each side of the middle one: with pitches 20 and 21 um the range is +-10 um, one bar a um."""
+DIGITS = {-10: "10", -5: "+5", 0: "0", 5: "-5", 10: "10"}
+"""What stands under the bottom vernier's long bars, by the number of the bar."""
 PITCH: dict[Plate, float] = {"bottom": 20.0, "top": 21.0}
 """Of verniers and moire rings [um]."""
 TIP_GAP = 15.0
@@ -106,13 +108,13 @@ def vernier(plate: Plate) -> Shape:
 
 
 def digits() -> Shape:
-    """Numbers under the bottom vernier's long bars, and the sign between them: the top plate's shift along x [um].
+    """Numbers under the bottom vernier's long bars: the top plate's shift along x [um].
 
     The top bar -s meets the bottom bar -s when the top plate is shifted by +s, so positive numbers stand on the left.
+    Only the inner ones have room for their sign.
     """
     y = -(TIP_GAP / 2 + 91.0 + 28.0)
-    numbers = [moved(text(str(abs(k)), SMALL), k * PITCH["bottom"], y) for k in (-10, -5, 0, 5, 10)]
-    return join(*numbers, moved(text("+", SMALL), -150, y), moved(text("-", SMALL), 150, y))
+    return join(*(moved(text(word, SMALL), k * PITCH["bottom"], y) for k, word in DIGITS.items()))
 
 
 def code(wanted: Wanted) -> Shape:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,8 +21,29 @@ if TYPE_CHECKING:
 
 COLOURS: dict[Plate, str] = {"bottom": "tab:blue", "top": "tab:red"}
 
+MARK_INK = 0.9
+"""Opacity of marks: see `View.ink`."""
+
 BORDER = 0.02
 """Side of the picture of a border between domains [mm]."""
+
+LARGEST, LEAST = (8.0, 11.0), 3.0
+"""Width and height that a picture's axes may have, and the least of either [inch]."""
+
+MARGIN, BAR = 1.0, 1.4
+"""Beside and below the axes, and for a colour bar [inch]."""
+
+
+@dataclass(frozen=True)
+class View:
+    """What a picture shows."""
+
+    region: Rect
+    title: str
+    shift: tuple[float, float] = (0.0, 0.0)
+    """How far the top plate is shifted [mm]."""
+    ink: float = 0.5
+    """Opacity; the marks' gratings are too fine to be resolved, and need more than the channels close by."""
 
 
 def write_pictures(
@@ -42,24 +64,27 @@ def write_pictures(
     middle = int(np.argmin(np.linalg.norm(domains.centroid - domains.centroid.mean(axis=0), axis=1)))
     corner = domains.corners[middle]
     (x0, y0), (x1, y1) = corner.min(axis=0), corner.max(axis=0)
+    x, y = mismatch
+    shifted = f"lower left, top plate shifted by ({x / UM:g}, {y / UM:g}) um"
     views = {
-        "domain.png": (Rect(x0, y0, x1, y1), (0.0, 0.0)),
-        "border.png": (_around((corner[0] + corner[1]) / 2, BORDER), (0.0, 0.0)),
-        "overlay.png": (_around(frame.marks[0], MARK_BOX), mismatch),
+        "domain.png": View(Rect(x0, y0, x1, y1), f"domain {middle}"),
+        "border.png": View(_around((corner[0] + corner[1]) / 2, BORDER), f"border of domain {middle}"),
+        "overlay.png": View(_around(frame.marks[0], MARK_BOX), shifted, mismatch, MARK_INK),
     } | {
-        f"cluster {place}.png".replace(" ", "_"): (_around(at, MARK_BOX), (0.0, 0.0))
+        f"cluster {place}.png".replace(" ", "_"): View(_around(at, MARK_BOX), place, ink=MARK_INK)
         for place, at in zip(PLACES, frame.marks, strict=True)
     }
     seen = {name: {plate: list[Floats]() for plate in masks} for name in views}
     for plate, mask in masks.items():
         for polygons in _polygons(mask):  # one pass for all pictures: a large plate is never in memory
             low, high = polygons.min(axis=1), polygons.max(axis=1)
-            for name, (view, _) in views.items():
-                inside = np.all((high >= [view.x0, view.y0]) & (low <= [view.x1, view.y1]), axis=1)
+            for name, view in views.items():
+                start, end = view.region.ring[[0, 2]]
+                inside = np.all((high >= start) & (low <= end), axis=1)
                 seen[name][plate].extend(polygons[inside])
-    for name, (view, shift) in views.items():
-        shifts = {"bottom": (0.0, 0.0), "top": shift}
-        _save(_zoom(view, {p: np.array(q).reshape(-1, 4, 2) + shifts[p] for p, q in seen[name].items()}), folder / name)
+    for name, view in views.items():
+        shapes = {plate: np.array(found).reshape(-1, 4, 2) for plate, found in seen[name].items()}
+        _save(_zoom(view, shapes, domains), folder / name)
 
 
 def _polygons(mask: Mask) -> Iterator[Floats]:
@@ -77,10 +102,10 @@ def _overview(frame: Frame, domains: Domains) -> Figure:
     from matplotlib.collections import PolyCollection
     from matplotlib.patches import Polygon
 
-    figure, axes = _figure(frame.plate)
+    figure, axes = _figure(frame.plate, BAR)
     coloured = PolyCollection(domains.corners, array=np.degrees(domains.theta), cmap="hsv", clim=(0, 180), lw=0)
     axes.add_collection(coloured)
-    figure.colorbar(coloured, ax=axes, label="director [degrees]", shrink=0.7)
+    figure.colorbar(coloured, ax=axes, label="director [degrees]", shrink=0.7, aspect=30)
     for ring, look in (
         (frame.plate.ring, {"fill": False}),
         (frame.fill.ring, {"fill": False, "ls": ":"}),
@@ -89,27 +114,38 @@ def _overview(frame: Frame, domains: Domains) -> Figure:
         *((band.ring, {"fill": False, "ls": "--", "ec": "0.6"}) for band in frame.bands),
     ):
         axes.add_patch(Polygon(ring, **look))
+    for place, (x, y) in zip(PLACES, frame.marks, strict=True):
+        side, va = (-1, "top") if place.startswith("lower") else (1, "bottom")
+        at = (x, y + side * MARK_BOX / 2)
+        axes.annotate(place, at, (0, 2 * side), textcoords="offset points", ha="center", va=va, size=6)
     axes.set(xlabel="x [mm]", ylabel="y [mm]")
     return figure
 
 
-def _zoom(view: Rect, polygons: Mapping[Plate, Floats]) -> Figure:
-    """Both plates' channels or marks in ``view``, in um from its middle."""
+def _zoom(view: View, polygons: Mapping[Plate, Floats], domains: Domains) -> Figure:
+    """Both plates' channels or marks and the domains' borders in ``view``, in um from its middle."""
     from matplotlib.collections import PolyCollection
 
-    middle = np.array([view.x0 + view.x1, view.y0 + view.y1]) / 2
-    figure, axes = _figure(Rect(*((view.ring[[0, 2]] - middle) / UM).ravel()))
+    (x0, y0), (x1, y1) = view.region.ring[[0, 2]]
+    middle = np.array([x0 + x1, y0 + y1]) / 2
+    figure, axes = _figure(Rect(*((view.region.ring[[0, 2]] - middle) / UM).ravel()))
+    shifts = {"bottom": (0.0, 0.0), "top": view.shift}
     for plate, shapes in polygons.items():
-        axes.add_collection(PolyCollection((shapes - middle) / UM, color=COLOURS[plate], alpha=0.5, lw=0, label=plate))
+        corners, colour = (shapes + shifts[plate] - middle) / UM, COLOURS[plate]
+        drawn = PolyCollection(corners, color=colour, alpha=view.ink, lw=0, label=plate, snap=False)  # lines keep width
+        axes.add_collection(drawn)
+    axes.add_collection(PolyCollection((domains.corners - middle) / UM, fc="none", ec="0.3", lw=0.5))
     axes.set(xlabel="x [um]", ylabel="y [um]")
-    figure.legend(loc="outside upper center", ncols=2)
+    figure.legend(loc="outside upper center", ncols=2, title=view.title)
     return figure
 
 
-def _figure(view: Rect) -> tuple[Figure, Any]:
+def _figure(view: Rect, beside: float = 0.0) -> tuple[Figure, Any]:
+    """A figure that its axes fill, but for ``beside`` [inch] on the right."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(9, 9 * min(max(view.size[1] / view.size[0], 0.4), 1.5)), layout="constrained")
+    width, height = np.maximum(np.array(view.size) * min(np.array(LARGEST) / view.size), LEAST) + MARGIN
+    figure = Figure(figsize=(width + beside, height), layout="constrained")
     axes = figure.add_subplot(aspect="equal", xlim=(view.x0, view.x1), ylim=(view.y0, view.y1))
     return figure, axes
 

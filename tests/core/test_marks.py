@@ -173,9 +173,11 @@ def test_the_digits_name_the_shift(shift):
     bars = {p: vernier(p).mean(axis=1)[:, 0] for p in ("bottom", "top")}
     (k,) = np.flatnonzero(np.abs(bars["top"] + shift * UM - bars["bottom"]) < 1e-9)
     assert (k - 10) * 20 == -20 * shift
-    plus = moved(text("+", 6.0), -150, -126.5)
     digits = drawn(MARKS["digits_x"], "bottom") - np.array(MARKS["digits_x"].at) * UM
-    assert (region(plus) - region(digits)).is_empty()
+    for word, number in (("10", 10), ("+5", 5), ("0", 0), ("-5", -5), ("10", -10)):
+        printed = moved(text(word, 6.0), -20 * number, -126.5)
+        around = moved(box(-40, -30, 40, 30), -20 * number, -126.5)
+        assert ((region(digits) & region(around)) ^ region(printed)).is_empty()
 
 
 def test_rings_of_both_plates_beat():
