@@ -178,14 +178,14 @@ def _studies() -> str:
 
 def _demo(args: argparse.Namespace) -> int:
     from lce_workbench.core import jobfile
-    from lce_workbench.pipeline import STAGES
+    from lce_workbench.stages import STAGES
 
     return _run(args, jobfile.load(DEMO), DEMO.parent, args.out, list(STAGES))
 
 
 def _job(args: argparse.Namespace) -> int:
     from lce_workbench.core import jobfile
-    from lce_workbench.pipeline import STAGES
+    from lce_workbench.stages import STAGES
 
     job = jobfile.load(args.job, args.settings)
     out = args.out or args.job.parent / "out" / args.job.stem

@@ -28,7 +28,7 @@ from lce_workbench.outputs import (
     staged,
     write_manifest,
 )
-from lce_workbench.pipeline import fabricable
+from lce_workbench.stages import fabricable
 
 Row = dict[str, Any]
 

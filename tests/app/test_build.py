@@ -1,7 +1,6 @@
 """One job through the whole pipeline, from the shell and inside FreeCAD."""
 
 import csv
-import hashlib
 import json
 import os
 import re
@@ -17,6 +16,7 @@ import numpy as np
 import pytest
 from faults import BAD_JOBS, BAD_MESHES
 from scipy.spatial.transform import Rotation
+from small import digests
 
 from lce_workbench import ROOT
 from lce_workbench.cli import main
@@ -63,9 +63,8 @@ def built(job):
     return job.parent / "out" / "saddle job"
 
 
-def digests(folder):
-    files = (p for p in folder.rglob("*") if p.is_file() and p.name != "manifest.json")
-    return {p.relative_to(folder).as_posix(): hashlib.sha256(p.read_bytes()).hexdigest() for p in files}
+def files(folder):
+    return digests(folder, besides=["manifest.json"])
 
 
 def rows(folder):
@@ -80,7 +79,7 @@ def test_a_build_writes_the_files_of_the_contract_and_nothing_else(built):
 
 def test_the_manifest_tells_the_truth(built):
     manifest = json.loads((built / "manifest.json").read_text())
-    assert {f["path"]: f["sha256"] for f in manifest["files"]} == digests(built)
+    assert {f["path"]: f["sha256"] for f in manifest["files"]} == files(built)
     assert manifest["exit_code"] == 0
     assert manifest["stages"] == ["design", "predict", "mask", "cad", "drawings", "review"]
     assert any(f["check"] == "material_estimate" for f in manifest["findings"])
@@ -88,7 +87,7 @@ def test_the_manifest_tells_the_truth(built):
 
 def test_the_same_job_gives_the_same_bytes(built, job, tmp_path):
     assert main(["build", str(job), "--quiet", "--out", str(tmp_path / "again")]) == 0
-    assert digests(tmp_path / "again") == digests(built)
+    assert files(tmp_path / "again") == files(built)
 
 
 def test_freecad_gives_the_same_bytes_as_the_shell(built, job, tmp_path):
@@ -98,7 +97,7 @@ def test_freecad_gives_the_same_bytes_as_the_shell(built, job, tmp_path):
         capture_output=True, text=True, check=False, env={**os.environ, "LC_ALL": "C.UTF-8"}, cwd=tmp_path,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    assert digests(tmp_path / "in freecad") == digests(built)
+    assert files(tmp_path / "in freecad") == files(built)
 
 
 def test_the_stages_alone_equal_the_build(built, job, tmp_path):
@@ -107,7 +106,7 @@ def test_the_stages_alone_equal_the_build(built, job, tmp_path):
     assert sorted(p.name for p in out.iterdir()) == ["design.npz", "domains.csv", "job.toml", "manifest.json"]
     for stage in ("predict", "mask", "cad", "drawings", "review"):
         assert main([stage, str(out), "--quiet"]) == 0
-    assert digests(out) == digests(built)
+    assert files(out) == files(built)
 
 
 def test_the_resolved_job_builds_again(built, tmp_path):
@@ -325,10 +324,10 @@ def test_another_film_takes_the_metric_and_solves_the_twist_alone(job, built, tm
         fresh, taken = tmp_path / "fresh", tmp_path / "taken"
         for out, how in ((fresh, ()), (taken, ("--metric", str(built)))):
             main(["design", str(job), "--quiet", "--out", str(out), *how, "--set", change])
-        assert digests(taken) == digests(fresh)
+        assert files(taken) == files(fresh)
         found, expected = (json.loads((out / "manifest.json").read_text())["findings"] for out in (taken, fresh))
         assert found == expected
-        assert digests(taken)["domains.csv"] != digests(built)["domains.csv"]
+        assert files(taken)["domains.csv"] != files(built)["domains.csv"]
     capsys.readouterr()
     assert main(["design", str(job), "--out", str(taken), "--metric", str(built), "--set", "sheet.width_mm=3.1"]) == 2
     assert "sheet.width_mm is 3.1, but" in capsys.readouterr().err

@@ -1,43 +1,24 @@
 """A heating that is interrupted goes on where it stopped; and the film of it."""
 
-import hashlib
 import json
 import struct
 from pathlib import Path
 
 import numpy as np
 import pytest
+import small
+from small import digests
 
 from lce_workbench.checkpoint import place
-from lce_workbench.cli import Bar, main
+from lce_workbench.cli import Bar
 from lce_workbench.core import jobfile
 from lce_workbench.outputs import read_design
 from lce_workbench.pipeline import build
 
-JOB = """
-[target]
-surface = "saddle"
-[sheet]
-width_mm = 3.0
-gap_um = 20
-[domains]
-size_um = 400.0
-[prediction]
-correct = "off"
-steps = 4
-film = true
-"""
-
 
 @pytest.fixture
 def designed(tmp_path):
-    (tmp_path / "job.toml").write_text(JOB)
-    assert main(["design", str(tmp_path / "job.toml"), "--quiet", "--out", str(tmp_path / "here" / "sheet")]) == 0
-    return tmp_path / "here" / "sheet"
-
-
-def digests(folder):
-    return {p.relative_to(folder).as_posix(): hashlib.sha256(p.read_bytes()).hexdigest() for p in folder.rglob("*.*")}
+    return small.designed(tmp_path, settings=["prediction.film=true"])
 
 
 def heated(folder, stop=2.0):

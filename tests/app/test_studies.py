@@ -1,13 +1,14 @@
 """Studies from the command line, in this process and on workers of which one is killed."""
 
 import csv
-import hashlib
 import json
 import os
 import signal
 
 import pytest
+import small
 from distributed import Client, LocalCluster
+from small import digests
 
 from lce_workbench.cli import main
 from lce_workbench.core.job import PredictionSpec
@@ -16,33 +17,11 @@ from lce_workbench.divided import read_domains
 from lce_workbench.outputs import read_design
 from lce_workbench.studies import computed
 
-JOB = """
-[target]
-surface = "saddle"
-[sheet]
-width_mm = 3.0
-gap_um = 20
-[domains]
-size_um = 400.0
-[prediction]
-correct = "off"
-steps = 2
-[output]
-masks = ["gds"]
-pictures = false
-"""
-
 
 @pytest.fixture(scope="module")
 def designed(tmp_path_factory):
-    path = tmp_path_factory.mktemp("studies") / "small.toml"
-    path.write_text(JOB)
-    assert main(["design", str(path), "--quiet"]) == 0
-    return path.parent / "out" / "small"
-
-
-def digests(folder):
-    return {p.relative_to(folder).as_posix(): hashlib.sha256(p.read_bytes()).hexdigest() for p in folder.rglob("*.*")}
+    settings = ['output.masks=["gds"]', "output.pictures=false"]
+    return small.designed(tmp_path_factory.mktemp("studies"), steps=2, settings=settings)
 
 
 def test_a_study_adds_its_files_and_later_stages_keep_them(designed, capsys):
