@@ -43,6 +43,8 @@ def bodies(doc):
     found = {}
     for obj in doc.findObjects("Part::FeaturePython"):
         box, shape = obj.Shape.BoundBox, obj.Shape
+        if shape.isNull():  # an option of the workshop that is off
+            continue
         found[obj.Name] = {
             "volume": shape.Volume,
             "solids": len(shape.Solids),

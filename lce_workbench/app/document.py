@@ -17,6 +17,7 @@ from lce_workbench.app.objects import CELL_SECTIONS, FILES, SHAPED_BY, Body, Par
 from lce_workbench.app.properties import write
 from lce_workbench.app.results import RESULTS, DesignData
 from lce_workbench.core import jobfile
+from lce_workbench.core.cell import LOOKS
 from lce_workbench.core.job import Job
 from lce_workbench.outputs import told
 
@@ -109,10 +110,19 @@ def take_design(cell: Any, design_npz: Path, job: Job, manifest: str = "") -> No
 
 
 def add_bodies(cell: Any) -> None:
-    """Add plates, spacer and film that the cell does not have yet."""
-    for prism in prisms_around(cell).parts:
-        if _body_of(cell, prism.name) is None:
-            _assembly(cell, prism.group).addObject(_body(cell, prism.name))
+    """Add plates, spacer and film that the cell does not have yet, and what an option may bring later."""
+    parts = {prism.name: prism.group for prism in prisms_around(cell).parts}
+    for name, group in {**parts, **OPTIONAL}.items():
+        if _body_of(cell, name) is None:
+            body = _body(cell, name)
+            if name not in parts:  # what is empty tells no colour
+                body.Colour, opacity = LOOKS["glue" if group else "jig"]
+                body.Transparency = round(100 * (1 - opacity))
+            _assembly(cell, group).addObject(body)
+
+
+OPTIONAL = {"glue_left": "glue", "glue_right": "glue", "alignment_frame": ""}
+"""Parts that a workshop's options bring and take -> their assembly; meanwhile their bodies are empty."""
 
 
 def add_window(cell: Any) -> None:

@@ -166,7 +166,8 @@ class Body(Proxy):
         if not prisms:  # an option of the workshop was switched off
             obj.Shape = Part.Shape()
             return
-        shapes = [solid(prism) for prism in prisms]
+        stacks = [prisms] if prisms[0].name == obj.Prisms else [[prism] for prism in prisms]  # a part; channels
+        shapes = [solid(stack) for stack in stacks]
         obj.Shape = shapes[0] if len(shapes) == 1 else Part.makeCompound(shapes)
         obj.Colour = prisms[0].colour
         obj.Transparency = _transparency(prisms[0])

@@ -14,6 +14,7 @@ from lce_workbench.core.domains import PLATES, Domains, Plate
 from lce_workbench.core.frame import Frame, arrange
 from lce_workbench.core.job import Job, Output, Plates, Sheet
 from lce_workbench.core.marks import MARKS, Wanted
+from lce_workbench.core.prism import Prism, bodies
 from lce_workbench.core.shapes import moved
 
 PITCH = 0.03
@@ -57,6 +58,12 @@ def cell(chosen: tuple[int, ...] = (24, 25), gap_um: float = 100.0, plates: Plat
     bottom = np.concatenate([cross(*centre) for centre in frame.marks[:4]])
     top = np.concatenate([bottom, cross(frame.marks[0, 0], 0.0)])
     return assemble(frame, wanted, sheet, {"bottom": bottom, "top": top}, hatched(sheet, wanted))
+
+
+def stacks() -> list[list[Prism]]:
+    """Every body of `cell`, each channel alone, and the bodies of the cell that has every option."""
+    plain, worked = cell(), cell(plates=WORKSHOP)
+    return [*bodies(plain.parts).values(), *([p] for p in plain.channels), *bodies(worked.parts).values()]
 
 
 def gauged(plates: Plates | None = None) -> tuple[Cell, dict[Plate, list[Channels]], Frame, Job]:

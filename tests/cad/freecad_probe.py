@@ -8,19 +8,17 @@ from pathlib import Path
 
 def main(folder: str) -> None:
     import Part
-    from cad.cad_sample import cell
+    from cad.cad_sample import stacks
 
     from lce_workbench.cad.part import solid
 
-    built = cell()
-    shapes = {f"{i} {p.name}": solid(p) for i, p in enumerate((*built.parts, *built.channels))}
     files = {}
     for path in sorted(Path(folder).rglob("*.step")):
         shape = Part.Shape()
         shape.read(str(path))
         files[path.relative_to(folder).as_posix()] = [measured(s) for s in shape.Solids]
-    prisms = {name: measured(shape) for name, shape in shapes.items()}
-    (Path(folder) / "freecad.json").write_text(json.dumps({"prisms": prisms, "files": files}))
+    built = [measured(solid(stack)) for stack in stacks()]
+    (Path(folder) / "freecad.json").write_text(json.dumps({"bodies": built, "files": files}))
 
 
 def measured(shape) -> dict:
@@ -29,5 +27,6 @@ def measured(shape) -> dict:
         "volume": shape.Volume,
         "centroid": list(shape.CenterOfMass),
         "valid": shape.isValid(),
+        "type": shape.ShapeType,
         "box": [box.XMin, box.YMin, box.ZMin, box.XMax, box.YMax, box.ZMax],
     }

@@ -4,7 +4,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from cad.cad_sample import cell
+from cad.cad_sample import cell, stacks
 from cad.readers import centroid, valid, volume
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
 from OCP.TopTools import TopTools_ListOfShape
@@ -12,21 +12,24 @@ from OCP.TopTools import TopTools_ListOfShape
 from lce_solver.errors import LceError
 from lce_workbench.cad.solids import VOLUME_TOLERANCE, require_volume, solid
 from lce_workbench.cad.step import CHANNEL_FILES, EXTRAS, FILES
-from lce_workbench.core.prism import Prism
+from lce_workbench.core.prism import Prism, together
 
 
-def test_both_kernels_agree_on_every_part(sample, freecad):
-    prisms = (*sample.parts, *sample.channels)
-    assert len(prisms) == len(freecad["prisms"])
-    for prism, there in zip(prisms, freecad["prisms"].values(), strict=True):
-        here = solid([prism]).wrapped
-        assert volume(here) == pytest.approx(prism.volume, rel=1e-9)
+def test_both_kernels_agree_on_every_body(freecad):
+    """Also on tapered and chamfered ones, which are one solid of several layers."""
+    built = stacks()
+    assert len(built) == len(freecad["bodies"])
+    assert max(map(len, built)) == 3
+    for stack, there in zip(built, freecad["bodies"], strict=True):
+        here, (wanted, centre) = solid(stack).wrapped, together(stack)
+        assert volume(here) == pytest.approx(wanted, rel=1e-9)
         assert there["volume"] == pytest.approx(volume(here), rel=1e-9)
-        reach = {"rtol": 0, "atol": 1e-9 * np.ptp(prism.outline, axis=0).max()}
-        np.testing.assert_allclose(centroid(here), prism.centroid, **reach)
+        reach = {"rtol": 0, "atol": 1e-9 * np.ptp(stack[0].outline, axis=0).max()}
+        np.testing.assert_allclose(centroid(here), centre, **reach)
         np.testing.assert_allclose(there["centroid"], centroid(here), **reach)
         assert valid(here)
         assert there["valid"]
+        assert there["type"] == "Solid"
 
 
 def test_freecad_reads_the_step_files(sample, freecad):
