@@ -26,8 +26,18 @@ def write_table(domains: Domains, counts: Sequence[Ints], path: Path) -> None:
     OSError
         The file cannot be written.
     """
+    table = columns(domains, counts)
+    row = ",".join(FORMATS.get(name, f"%.{DECIMALS}f") for name in table) + "\n"
+    values = zip(*(column.tolist() for column in table.values()), strict=True)
+    with path.open("w", encoding="ascii", newline="\n") as file:
+        file.write(",".join(table) + "\n")
+        file.writelines(row % value for value in values)
+
+
+def columns(domains: Domains, counts: Sequence[Ints]) -> dict[str, Floats | Ints]:
+    """Name -> column (n_d,) of the table; arguments as for `write_table`."""
     x, y = domains.centroid.T
-    columns = {
+    return {
         "domain": np.arange(len(domains)),
         "x_mm": _rounded(x),
         "y_mm": _rounded(y),
@@ -43,11 +53,6 @@ def write_table(domains: Domains, counts: Sequence[Ints], path: Path) -> None:
         "channels_top": counts[1],
         "channels_bottom": counts[0],
     }
-    row = ",".join(FORMATS.get(name, f"%.{DECIMALS}f") for name in columns) + "\n"
-    values = zip(*(column.tolist() for column in columns.values()), strict=True)
-    with path.open("w", encoding="ascii", newline="\n") as file:
-        file.write(",".join(columns) + "\n")
-        file.writelines(row % value for value in values)
 
 
 FORMATS = {"domain": "%d", "channels_top": "%d", "channels_bottom": "%d", "area_mm2": "%.9f"}

@@ -19,11 +19,12 @@ class LceWorkbench(FreeCADGui.Workbench):
 
     def Initialize(self) -> None:  # noqa: N802  FreeCAD's name
         packages.append()
-        from lce_workbench.gui.commands import register
+        from lce_workbench.gui import commands, looks
 
-        names = register()
+        names, views = commands.register(), looks.register()
         self.appendToolbar("LCE Mold", [*names, "LCE_Examples"])
-        self.appendMenu("&LCE Mold", [*names, "Separator", "LCE_Examples"])
+        self.appendToolbar("LCE Mold View", views)
+        self.appendMenu("&LCE Mold", [*names, "Separator", *views, "Separator", "LCE_Examples"])
         FreeCADGui.addPreferencePage(str(ROOT / "resources" / "preferences.ui"), "LCE Mold")
 
     def GetClassName(self) -> str:  # noqa: N802  FreeCAD's name

@@ -1,0 +1,71 @@
+"""The legend of a picture as an image: title, colour bar with its numbers, notes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lce_workbench.app.pictures import Picture
+from lce_workbench.gui.qt import QtCore, QtGui, tr
+
+WIDTH, EDGE, LINE, BAR, TALL = 190, 12, 18, 22, 180
+"""Of the image, its margin, a line of text, the bar and its length [pixels]."""
+
+STEPS = 6
+"""Numbers beside the bar, at most."""
+
+
+@dataclass(frozen=True)
+class Legend:
+    """An image that the scene graph takes."""
+
+    pixels: bytes
+    """Rows from below, red, green, blue and opacity."""
+    size: tuple[int, int]
+
+
+def ticks(low: float, high: float) -> list[float]:
+    """Round numbers from ``low`` to ``high``, both of which are among them: a legend tells the range of the data."""
+    span = high - low
+    if not span > 0:
+        return [low]
+    raw = span / (STEPS - 1)
+    power = 10 ** np.floor(np.log10(raw))
+    step = power * next(nice for nice in (1, 2, 3, 5, 10) if nice * power >= raw * (1 - 1e-9))
+    inner = np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step
+    clear = inner[(inner > low + 0.35 * step) & (inner < high - 0.35 * step)]
+    return [low, *clear.tolist(), high]
+
+
+def legend(picture: Picture) -> Legend:
+    """Draw the legend of a picture."""
+    scale, words = picture.scale, [f"{tr(picture.scale.title)} [{picture.scale.unit}]", *picture.notes]
+    lines = 1 + len(words)
+    size = WIDTH, 3 * EDGE + lines * LINE + TALL + LINE // 2
+    image = QtGui.QImage(*size, QtGui.QImage.Format_RGBA8888)
+    image.fill(QtGui.QColor(255, 255, 255, 235))
+    painter = QtGui.QPainter(image)
+    painter.setRenderHint(QtGui.QPainter.TextAntialiasing)
+    font = painter.font()
+    font.setPixelSize(13)
+    for number, line in enumerate([tr(picture.title), *words]):
+        font.setBold(number == 0)
+        painter.setFont(font)
+        painter.drawText(QtCore.QRect(EDGE, EDGE + number * LINE, WIDTH - EDGE, LINE), 0, line)
+    top = 2 * EDGE + lines * LINE
+    values = np.linspace(scale.high, scale.low, TALL)
+    for row, (red, green, blue) in enumerate(np.round(255 * scale.colours(values)).astype(int).tolist()):
+        painter.fillRect(EDGE, top + row, BAR, 1, QtGui.QColor(red, green, blue))
+    painter.setPen(QtGui.QColor(60, 60, 60))
+    painter.drawRect(EDGE, top, BAR, TALL)
+    for value in ticks(scale.low, scale.high):
+        y = top + round(TALL * (scale.high - value) / ((scale.high - scale.low) or 1.0))
+        painter.drawLine(EDGE + BAR, y, EDGE + BAR + 5, y)
+        painter.drawText(QtCore.QRect(EDGE + BAR + 9, y - LINE // 2, WIDTH, LINE), VERTICAL, f"{value:.4g}")
+    painter.end()
+    return Legend(bytes(image.mirrored().constBits()), size)
+
+
+VERTICAL = QtCore.Qt.AlignVCenter
+"""Numbers stand beside their tick."""

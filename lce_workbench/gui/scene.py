@@ -1,0 +1,401 @@
+"""What the 3D view shows besides the document: pictures of the design, marked domains, the cell apart or cut open.
+
+    from lce_workbench.gui import scene
+    scene.show(cell, "directors")       # or "target", "deviation", "channels_bottom", "channels_top"; "" for the cell
+    scene.mark(cell, (3, 5))            # what the domain table has selected
+    scene.explode(cell, True)
+    scene.section(cell, 0.0)            # at y = 0 mm; None closes the cell again
+
+Nothing of it is in the document: nothing is saved, nothing becomes stale, and there is nothing to undo.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+import FreeCAD
+import numpy as np
+from pivy import coin
+
+from lce_solver.errors import InputError, LceError
+from lce_solver.types import Floats
+from lce_workbench.app import cells, works
+from lce_workbench.app.cuts import apart, cut
+from lce_workbench.app.geometry import domains_of, stored
+from lce_workbench.app.objects import job_of, prisms_around
+from lce_workbench.app.pictures import PICTURES, Picture, Shown, flat_skin
+from lce_workbench.app.results import STALE
+from lce_workbench.app.skins import Skin, domain_at, first_hit
+from lce_workbench.gui import nodes
+from lce_workbench.gui.camera import ABOVE, ASLANT, frame, look_at, view_of
+from lce_workbench.gui.legend import Legend, legend
+
+MARKED = (0.90, 0.00, 0.45)
+"""Colour of marked domains."""
+
+REACH = 1e-3
+"""Size of the legend's own world relative to what is shown."""
+
+CLOSE = 8.0
+"""Height of the view over the size of the domains that it goes to."""
+
+GAPS = 25.0
+"""Height of the view over the gap when the cell is cut open."""
+
+STILL = 3
+"""A mouse that moved less between press and release has clicked [pixels]."""
+
+
+class Scene:
+    """The state of a cell's view, and the nodes that show it."""
+
+    def __init__(self, cell: Any) -> None:
+        self.cell = cell
+        self.name = ""
+        """Of the picture; "" for the cell itself."""
+        self.picture: Picture | None = None
+        self.legend: Legend | None = None
+        self.exploded = False
+        self.cut_at: float | None = None
+        """y of the section [mm]."""
+        self.marked: tuple[int, ...] = ()
+        self.document = cell.Document
+        self.aside: dict[str, int] = {}
+        """Name of an object that a picture puts aside -> what its switch showed."""
+        self.lifts: dict[str, Any] = {}
+        """Name of a body -> the node that moves it when the cell is taken apart."""
+        self.key: Any = None
+        """What the nodes were made for."""
+        self.gone = False
+        """Whether the cell does not exist any more."""
+        self.picking = False
+        """Whether a click marks a domain."""
+        self.pressed = (0, 0)
+        self.camera = ""
+        """As it was before the first picture."""
+        self.view = view_of(cell.Document)
+        self.graph = self.view.getSceneGraph()
+        self.front, self.clip, self.back, self.marks = (coin.SoGroup() for _ in range(4))
+        for place, node in enumerate((self.front, self.clip)):
+            self.graph.insertChild(node, place)
+        for node in (self.back, self.marks):
+            self.graph.addChild(node)
+        self.listening = self.view.addEventCallback("SoMouseButtonEvent", self.clicked)
+
+    def shown(self) -> Shown:
+        """What there is to be shown, for the parameters as they are.
+
+        Raises
+        ------
+        InputError
+            There is no design.
+        """
+        works.require_design(self.cell)
+        job, design = job_of(cells.sections(self.cell).values()), cells.design_of(self.cell)
+        path, made_for = Path(design.File), cells.made_for(design)
+        plan = stored(path, job.sheet, made_for.sheet)
+        heating, hot = cells.result(self.cell, "PredictionData"), None
+        if heating is not None and heating.File:
+            with np.load(heating.File, allow_pickle=False) as data:
+                hot = data["vertices"] if len(data["vertices"]) == len(plan.uv) else None
+        sources = {"deviation": (heating,)}.get(self.name, (design,))
+        notes = tuple(STALE for source in sources if source is not None and source.Status.startswith(STALE))
+        return Shown(plan, domains_of(path, job, made_for), job, hot, notes)
+
+    def draw(self) -> None:
+        """Make all nodes anew from the state.
+
+        Raises
+        ------
+        LceError
+            What is missing; then the cell itself is shown.
+        """
+        for node in (self.front, self.clip, self.back):
+            node.removeAllChildren()
+        self.picture, self.legend = None, None
+        self.key = self.made_for()
+        try:
+            if self.name:
+                self.picture = PICTURES[self.name](self.shown())
+                self.legend = legend(self.picture)
+        except LceError:
+            self.name = ""
+            raise
+        finally:
+            self.put_aside(bool(self.name))
+            self.take_apart(0.0 if self.name or not self.exploded else self.width())
+        if self.picture and self.legend:
+            low, high = self.box()
+            reach = REACH * float(np.linalg.norm(high - low))
+            self.front.addChild(nodes.image(self.legend.pixels, self.legend.size, (low + high) / 2, reach))
+            self.back.addChild(nodes.picture(self.picture))
+        elif self.cut_at is not None:
+            self.cut_open(self.cut_at)
+        self.outline()
+
+    def made_for(self) -> Any:
+        """What the picture depends on: when it changes, it is drawn anew."""
+        design, heating = cells.design_of(self.cell), cells.result(self.cell, "PredictionData")
+        job = job_of(cells.sections(self.cell).values())
+        files = [cells.digest(obj.File) for obj in (design, heating) if obj is not None]
+        bodies = tuple(obj.Name for obj in self.bodies())
+        return self.name, files, job, bodies
+
+    def bodies(self) -> list[Any]:
+        """The solids of the cell."""
+        return [obj for obj in self.cell.OutListRecursive if cells.kind_of(obj) == "Body"]
+
+    def box(self) -> tuple[Floats, Floats]:
+        """Corners of the box around a picture [mm]."""
+        points = np.concatenate([skin.points for skin in self.skins()])
+        return points.min(axis=0), points.max(axis=0)
+
+    def skins(self) -> tuple[Skin, ...]:
+        """Where domains are seen and picked: in the picture, or on the film in the cell."""
+        return self.picture.skins if self.picture else (flat_skin(self.shown().design),)
+
+    def put_aside(self, away: bool) -> None:
+        """Hide the document's objects behind a picture, or show again what it hid."""
+        if away:
+            for obj in self.document.RootObjects:
+                switch = getattr(obj.ViewObject, "SwitchNode", None)
+                if switch is not None and switch.whichChild.getValue() != coin.SO_SWITCH_NONE:
+                    self.aside[obj.Name] = switch.whichChild.getValue()
+                    switch.whichChild = coin.SO_SWITCH_NONE
+            return
+        for name, child in self.aside.items():
+            obj = self.document.getObject(name)
+            if obj is not None and obj.ViewObject.Visibility:
+                obj.ViewObject.SwitchNode.whichChild = child
+        self.aside = {}
+
+    def width(self) -> float:
+        """Of the plates [mm]."""
+        return float(max(np.ptp(part.outline, axis=0).min() for part in prisms_around(self.cell).parts))
+
+    def take_apart(self, width: float) -> None:
+        """Move the bodies along z, as far as parts of plates of this ``width`` [mm] go; 0 puts them together."""
+        for body in self.bodies():
+            if body.Name not in self.lifts:
+                self.lifts[body.Name] = coin.SoTranslation()
+                body.ViewObject.RootNode.insertChild(self.lifts[body.Name], 0)
+            self.lifts[body.Name].translation = (0.0, 0.0, apart(body.Prisms, width))
+
+    def cut_open(self, y: float) -> None:
+        """Hide what is before the plane at ``y`` [mm], and fill the solids that it goes through."""
+        around = prisms_around(self.cell)
+        width = self.width() if self.exploded else 0.0
+        names = {body.Prisms for body in self.bodies()}
+        pieces, colours = [], []
+        for found in cut([p for p in (*around.parts, *around.channels) if names & {p.name, p.group}], y):
+            at = np.full((*found.quads.shape[:2], 3), y)
+            at[..., 0], at[..., 2] = found.quads[..., 0], found.quads[..., 1] + apart(found.name, width)
+            pieces.append(at)
+            colours += [found.colour] * len(at)
+        if pieces:
+            self.front.addChild(nodes.quads(np.concatenate(pieces), colours))
+        plane = coin.SoClipPlane()
+        plane.plane = coin.SbPlane(coin.SbVec3f(0.0, 1.0, 0.0), y)
+        self.clip.addChild(plane)
+
+    def outline(self) -> None:
+        """Draw the marked domains."""
+        self.marks.removeAllChildren()
+        if not self.marked:
+            return
+        domains = self.shown().domains
+        lines = []
+        for skin in self.skins():
+            for domain in self.marked:
+                ring = domains.ring(domain)
+                lines.append(skin.lift(np.concatenate([ring, ring[:1]])))
+        self.marks.addChild(nodes.polylines(lines, MARKED, 3.0))
+
+    def go_to(self) -> None:
+        """Turn the camera to the marked domains."""
+        domains = self.shown().domains
+        rings = np.concatenate([domains.ring(domain) for domain in self.marked])
+        points = self.skins()[0].lift(rings)
+        size = float(np.linalg.norm(np.ptp(points, axis=0)))
+        look_at(self.view, (points.min(axis=0) + points.max(axis=0)) / 2, CLOSE * size)
+
+    def pick(self, pixel: tuple[int, int]) -> int | None:
+        """The domain that is seen at a pixel, from the lower left corner of the view; `None` beside the sheet."""
+        start, end = (np.array(point) for point in self.view.projectPointToLine(*pixel))
+        flat = first_hit(self.skins(), start, end - start)
+        return None if flat is None else domain_at(self.shown().domains, flat)
+
+    def clicked(self, event: dict[str, Any]) -> None:
+        """Mark the domain that was clicked, while domains are picked; with Ctrl, besides the others or no more."""
+        if not self.picking or event["Button"] != "BUTTON1":
+            return
+        if event["State"] == "DOWN":
+            self.pressed = event["Position"]
+        elif np.abs(np.subtract(event["Position"], self.pressed)).max() <= STILL:
+            domain = self.pick(event["Position"])
+            if domain is not None:
+                mark(self.cell, sorted({*self.marked} ^ {domain}) if event["CtrlDown"] else (domain,))
+
+    def close(self) -> None:
+        """Leave the view of a cell that is gone."""
+        self.view.removeEventCallback("SoMouseButtonEvent", self.listening)
+        for node in (self.front, self.clip, self.back, self.marks):
+            self.graph.removeChild(node)
+        self.put_aside(False)
+
+
+def show(cell: Any, name: str) -> None:
+    """Show a picture of `PICTURES`, or the cell itself for "".
+
+    Raises
+    ------
+    LceError
+        There is no such picture, or it needs what is not computed yet.
+    """
+    if name and name not in PICTURES:
+        msg = f"there is no picture {name!r}; there are {', '.join(PICTURES)}"
+        raise InputError(msg)
+    scene = of(cell)
+    if name and not scene.name:
+        scene.camera = scene.view.getCamera()
+    scene.name, former = name, scene.name
+    scene.draw()
+    if name:
+        scene.view.setCameraOrientation(ABOVE if name.startswith("channels") else ASLANT)
+        frame(scene.view, np.concatenate([skin.points for skin in scene.skins()]))
+    elif former and scene.camera:
+        scene.view.setCamera(scene.camera)
+
+
+def explode(cell: Any, exploded: bool = True) -> None:
+    """Take the cell apart, or put it together; no placement changes.
+
+    Raises
+    ------
+    LceError
+        The cell has no plates yet.
+    """
+    scene = _with_plates(cell)
+    scene.exploded = exploded
+    scene.draw()
+    scene.view.fitAll()
+
+
+def section(cell: Any, y: float | None = 0.0) -> None:
+    """Cut the cell open at ``y`` [mm] and look into the gap; `None` closes it.
+
+    Raises
+    ------
+    LceError
+        The cell has no plates yet.
+    """
+    scene = _with_plates(cell)
+    scene.cut_at = y
+    scene.draw()
+    if y is None or scene.exploded:
+        scene.view.fitAll()
+        return
+    scene.view.viewFront()
+    look_at(scene.view, (window_place(cell)[0], y, 0.0), GAPS * scene.shown().job.sheet.thickness)
+
+
+def window_place(cell: Any) -> tuple[float, float]:
+    """The middle of the first domain of the channel window, where a section shows channels; else that of the sheet."""
+    around = prisms_around(cell)
+    if not around.chosen:
+        return 0.0, 0.0
+    x, y = around.domains.centroid[around.chosen[0]].tolist()
+    return x, y
+
+
+def mark(cell: Any, domains: Iterable[int], *, go: bool = False) -> None:
+    """Mark domains in the view, and select them in the table; ``go`` turns the camera to them.
+
+    Raises
+    ------
+    InputError
+        There is no such domain, or no design.
+    """
+    scene, wanted = of(cell), tuple(domains)
+    count = len(scene.shown().domains)
+    for domain in wanted:
+        if not 0 <= domain < count:
+            msg = f"there is no domain {domain}; the design has 0 to {count - 1}"
+            raise InputError(msg)
+    scene.marked = wanted
+    scene.outline()
+    if go and wanted:
+        scene.go_to()
+    for watcher in WATCHERS:
+        watcher(scene)
+
+
+def of(cell: Any) -> Scene:
+    """The scene of a cell; it is made when there is none, or when its view was closed."""
+    name = cell.Document.Name, cell.Name
+    scene = SCENES.get(name)
+    if scene is None or int(scene.graph.this) != int(view_of(cell.Document).getSceneGraph().this):
+        if not SCENES:
+            FreeCAD.addDocumentObserver(FOLLOW)
+        SCENES[name] = scene = Scene(cell)
+    return scene
+
+
+def _with_plates(cell: Any) -> Scene:
+    """The scene of a cell that shows the cell itself."""
+    works.require_design(cell)
+    scene = of(cell)
+    if not scene.bodies():
+        msg = f"{cell.Label} has no plates yet; run Plates and Spacer first"
+        raise InputError(msg)
+    if scene.name:
+        show(cell, "")
+    return scene
+
+
+class Follow:
+    """Draws scenes anew when their document changes."""
+
+    def slotRecomputedDocument(self, doc: Any) -> None:  # noqa: N802  FreeCAD's name
+        """Parameters changed, or something was computed."""
+        for name, scene in list(SCENES.items()):
+            if name[0] != doc.Name:
+                continue
+            if doc.getObject(name[1]) is None:
+                _forget(name).close()
+                continue
+            try:
+                if scene.key != scene.made_for():
+                    scene.marked = ()
+                    scene.draw()
+            except LceError as fault:
+                FreeCAD.Console.PrintWarning(f"LCE Mold: {fault}\n")
+            for watcher in WATCHERS:
+                watcher(scene)
+
+    slotUndoDocument = slotRedoDocument = slotRecomputedDocument
+
+    def slotDeletedDocument(self, doc: Any) -> None:  # noqa: N802  FreeCAD's name
+        """Forget the scenes of a document that is closed."""
+        for name in [name for name in SCENES if name[0] == doc.Name]:
+            _forget(name)
+
+
+def _forget(name: tuple[str, str]) -> Scene:
+    """Take leave of a cell that is gone."""
+    scene = SCENES.pop(name)
+    scene.gone = True
+    for watcher in WATCHERS:
+        watcher(scene)
+    return scene
+
+
+FOLLOW = Follow()
+
+SCENES: dict[tuple[str, str], Scene] = {}
+"""Names of document and cell -> scene."""
+
+WATCHERS: list[Callable[[Scene], None]] = []
+"""Who wants to know that domains were marked, or that a scene was drawn anew."""
