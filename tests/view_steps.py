@@ -97,7 +97,7 @@ def pictured(cell, name, folder):
         "lines": lines(shown.back),
         "picked": picked(shown),
         "aside": seen_bodies(cell),
-        "notes": list(shown.picture.notes),
+        "count": shown.picture.count,
     }
 
 
@@ -264,7 +264,8 @@ def click(view, place, keys):
     from lce_workbench.gui.qt import QtCore, QtGui, QtWidgets
 
     area = view.graphicsView().viewport()
-    at = QtCore.QPointF(place[0], area.height() - 1 - place[1])
+    scale = view.getSize()[1] / area.height()  # Coin counts the screen's pixels, Qt its own
+    at = QtCore.QPointF(place[0] / scale, area.height() - 1 - place[1] / scale)
     held = QtCore.Qt.ControlModifier if keys else QtCore.Qt.NoModifier
     left, none = QtCore.Qt.LeftButton, QtCore.Qt.NoButton
     for kind, button, buttons in (

@@ -38,8 +38,8 @@ class Shown:
     job: Job
     hot: Floats | None = None
     """(n_v, 3) the shape of the heated sheet, where it was simulated [mm]."""
-    notes: tuple[str, ...] = ()
-    """What the legend has to say besides, such as that the design is stale."""
+    stale: bool = False
+    """Whether it was made for other parameters."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +65,9 @@ class Picture:
     skins: tuple[Skin, ...]
     strokes: tuple[Strokes, ...]
     scale: Scale
-    notes: tuple[str, ...] = ()
+    stale: bool = False
+    count: int = 0
+    """Of channels."""
 
 
 def target(shown: Shown) -> Picture:
@@ -73,7 +75,7 @@ def target(shown: Shown) -> Picture:
     scale = Scale("director θ", "°", 0.0, 180.0, "cyclic")
     colours = scale.colours(np.degrees(line_angle(shown.design.theta)))
     skins = flat_skin(shown.design, colours), target_skin(shown.design, colours)
-    return Picture("Target and flat sheet", skins, _rims(skins), scale, shown.notes)
+    return Picture("Target and flat sheet", skins, _rims(skins), scale, shown.stale)
 
 
 def directors(shown: Shown) -> Picture:
@@ -86,7 +88,7 @@ def directors(shown: Shown) -> Picture:
     colours, faces = scale.colours(twist), np.repeat(np.arange(len(twist)), 2)
     ends = sticks(design)
     lines = [Strokes(skin.lift(ends, faces).astype(np.float32), colours, width=2.0) for skin in skins]
-    return Picture("Directors", skins, (*lines, *_rims(skins)), scale, shown.notes)
+    return Picture("Directors", skins, (*lines, *_rims(skins)), scale, shown.stale)
 
 
 def deviation(shown: Shown) -> Picture:
@@ -113,7 +115,7 @@ def deviation(shown: Shown) -> Picture:
     scale = Scale("distance from the target", "µm", 0.0, float(away.max()), "sequential")
     skin = Skin(laid.moved, design.surface.faces, design.uv, scale.colours(away))
     rim = _lines(aim[rim_of(design.surface.faces)], INK, 2.0)
-    return Picture("Predicted shape", (skin,), (rim,), scale, shown.notes)
+    return Picture("Predicted shape", (skin,), (rim,), scale, shown.stale)
 
 
 def channels(shown: Shown, plate: Plate) -> Picture:
@@ -125,15 +127,13 @@ def channels(shown: Shown, plate: Plate) -> Picture:
         No domain is large enough for a single channel.
     """
     field = ChannelField(shown.domains, plate, shown.job.channels)
-    count = int(field.counts.sum())
     scale = Scale("channel direction", "°", 0.0, 180.0, "cyclic")
     colours = scale.colours(np.degrees(shown.domains.angle(plate)))
     every = joined(list(field))
     tiled = tuple(_tile(every, rows, colours) for rows in tiles(shown.domains, every.domain))
     rings = [_closed(ring) for _, ring in shown.domains.rings()]
     borders = _lines(_raised(np.concatenate([ring.reshape(-1, 2) for ring in rings])), INK, 1.0)
-    notes = (f"{count:,} channels".replace(",", "\u202f"), *shown.notes)
-    return Picture(TITLES[plate], (flat_skin(shown.design),), (*tiled, borders), scale, notes)
+    return Picture(TITLES[plate], (flat_skin(shown.design),), (*tiled, borders), scale, shown.stale, len(every))
 
 
 TITLES: dict[Plate, str] = {"bottom": "Channels, bottom plate", "top": "Channels, top plate"}

@@ -1,4 +1,4 @@
-"""The legend of a picture as an image: title, colour bar with its numbers, notes."""
+"""The legend of a picture as an image: title, number of channels, colour bar with its numbers."""
 
 from __future__ import annotations
 
@@ -11,6 +11,9 @@ from lce_workbench.gui.qt import QtCore, QtGui, tr
 
 WIDTH, EDGE, LINE, BAR, TALL = 190, 12, 18, 22, 180
 """Of the image, its margin, a line of text, the bar and its length [pixels]."""
+
+THIN = "\u202f"
+"""The space between thousands."""
 
 STEPS = 6
 """Numbers beside the bar, at most."""
@@ -40,8 +43,13 @@ def ticks(low: float, high: float) -> list[float]:
 
 def legend(picture: Picture) -> Legend:
     """Draw the legend of a picture."""
-    scale, words = picture.scale, [f"{tr(picture.scale.title)} [{picture.scale.unit}]", *picture.notes]
-    lines = 1 + len(words)
+    scale = picture.scale
+    words = [tr(picture.title), f"{tr(scale.title)} [{scale.unit}]"]
+    if picture.count:
+        words.append(f"{picture.count:,} ".replace(",", THIN) + tr("channels"))
+    if picture.stale:
+        words.append(tr("stale: parameters changed"))
+    lines = len(words)
     size = WIDTH, 3 * EDGE + lines * LINE + TALL + LINE // 2
     image = QtGui.QImage(*size, QtGui.QImage.Format_RGBA8888)
     image.fill(QtGui.QColor(255, 255, 255, 235))
@@ -49,7 +57,7 @@ def legend(picture: Picture) -> Legend:
     painter.setRenderHint(QtGui.QPainter.TextAntialiasing)
     font = painter.font()
     font.setPixelSize(13)
-    for number, line in enumerate([tr(picture.title), *words]):
+    for number, line in enumerate(words):
         font.setBold(number == 0)
         painter.setFont(font)
         painter.drawText(QtCore.QRect(EDGE, EDGE + number * LINE, WIDTH - EDGE, LINE), 0, line)

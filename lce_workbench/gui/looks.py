@@ -33,7 +33,7 @@ LOOKS = (
     ),
     Look(
         "ShowTarget", "scene.show({cell}, 'target')", "Target and Flat Sheet",
-        "Shows the flat sheet and the target above it, in the colour of the director", "view-target",
+        "Shows the flat sheet and the target beside it, in the colour of the director", "view-target",
     ),
     Look(
         "ShowDirectors", "scene.show({cell}, 'directors')", "Directors",

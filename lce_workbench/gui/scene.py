@@ -101,8 +101,8 @@ class Scene:
             with np.load(heating.File, allow_pickle=False) as data:
                 hot = data["vertices"] if len(data["vertices"]) == len(plan.uv) else None
         sources = {"deviation": (heating,)}.get(self.name, (design,))
-        notes = tuple(STALE for source in sources if source is not None and source.Status.startswith(STALE))
-        return Shown(plan, domains_of(path, job, made_for), job, hot, notes)
+        stale = any(source is not None and source.Status.startswith(STALE) for source in sources)
+        return Shown(plan, domains_of(path, job, made_for), job, hot, stale)
 
     def draw(self) -> None:
         """Make all nodes anew from the state.

@@ -21,7 +21,7 @@ from lce_workbench.gui.qt import QtCore, QtWidgets, tr
 DOCK = "lce_domains"
 """Object name of the dock."""
 
-HEADS = {
+HEADS: dict[str, str] = {
     "domain": "Domain", "x_mm": "x [mm]", "y_mm": "y [mm]", "area_mm2": "Area [mm²]", "theta_deg": "θ [°]",
     "dtheta_deg": "Δθ [°]", "theta_top_deg": "θ top [°]", "theta_bottom_deg": "θ bottom [°]",
     "stretch_along": "Stretch along", "stretch_across": "Stretch across",

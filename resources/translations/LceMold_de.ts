@@ -28,6 +28,86 @@
    <translation>(keine)</translation>
   </message>
   <message>
+   <source>stale: parameters changed</source>
+   <translation>veraltet: Parameter geändert</translation>
+  </message>
+  <message>
+   <source>channels</source>
+   <translation>Kanäle</translation>
+  </message>
+  <message>
+   <source>Cell</source>
+   <translation>Zelle</translation>
+  </message>
+  <message>
+   <source>Shows the cell itself, whole and closed</source>
+   <translation>Zeigt die Zelle selbst, ganz und geschlossen</translation>
+  </message>
+  <message>
+   <source>Target and Flat Sheet</source>
+   <translation>Ziel und flacher Film</translation>
+  </message>
+  <message>
+   <source>Shows the flat sheet and the target beside it, in the colour of the director</source>
+   <translation>Zeigt den flachen Film und daneben das Ziel in der Farbe des Direktors</translation>
+  </message>
+  <message>
+   <source>Directors</source>
+   <translation>Direktoren</translation>
+  </message>
+  <message>
+   <source>Shows the director of every triangle in the colour of its twist</source>
+   <translation>Zeigt den Direktor jedes Dreiecks in der Farbe seiner Verdrillung</translation>
+  </message>
+  <message>
+   <source>Predicted Shape</source>
+   <translation>Vorhergesagte Form</translation>
+  </message>
+  <message>
+   <source>Shows the heated sheet in the colour of its distance from the target</source>
+   <translation>Zeigt den erwärmten Film in der Farbe seines Abstands vom Ziel</translation>
+  </message>
+  <message>
+   <source>Channels of the Bottom Plate</source>
+   <translation>Kanäle der unteren Platte</translation>
+  </message>
+  <message>
+   <source>Shows all channels of the bottom plate as lines, seen from above</source>
+   <translation>Zeigt alle Kanäle der unteren Platte als Linien, von oben gesehen</translation>
+  </message>
+  <message>
+   <source>Channels of the Top Plate</source>
+   <translation>Kanäle der oberen Platte</translation>
+  </message>
+  <message>
+   <source>Shows all channels of the top plate as lines, seen from above</source>
+   <translation>Zeigt alle Kanäle der oberen Platte als Linien, von oben gesehen</translation>
+  </message>
+  <message>
+   <source>Exploded Cell</source>
+   <translation>Zelle auseinandergezogen</translation>
+  </message>
+  <message>
+   <source>Takes the cell apart in the view, or puts it together</source>
+   <translation>Zieht die Zelle in der Ansicht auseinander oder setzt sie zusammen</translation>
+  </message>
+  <message>
+   <source>Section through the Gap</source>
+   <translation>Schnitt durch den Spalt</translation>
+  </message>
+  <message>
+   <source>Cuts the cell open through the channel window in the view, or closes it</source>
+   <translation>Schneidet die Zelle in der Ansicht durch das Kanalfenster auf oder schließt sie</translation>
+  </message>
+  <message>
+   <source>Domain Table</source>
+   <translation>Tabelle der Domänen</translation>
+  </message>
+  <message>
+   <source>Lists all domains; clicks in the view select their rows, and rows mark them in the view</source>
+   <translation>Listet alle Domänen auf; Klicks in der Ansicht wählen Zeilen, gewählte Zeilen sind in der Ansicht markiert</translation>
+  </message>
+  <message>
    <source>More</source>
    <translation>Mehr</translation>
   </message>
@@ -168,6 +248,102 @@
    <translation>Export</translation>
   </message>
   <message>
+   <source>Domain</source>
+   <translation>Domäne</translation>
+  </message>
+  <message>
+   <source>x [mm]</source>
+   <translation>x [mm]</translation>
+  </message>
+  <message>
+   <source>y [mm]</source>
+   <translation>y [mm]</translation>
+  </message>
+  <message>
+   <source>Area [mm²]</source>
+   <translation>Fläche [mm²]</translation>
+  </message>
+  <message>
+   <source>θ [°]</source>
+   <translation>θ [°]</translation>
+  </message>
+  <message>
+   <source>Δθ [°]</source>
+   <translation>Δθ [°]</translation>
+  </message>
+  <message>
+   <source>θ top [°]</source>
+   <translation>θ oben [°]</translation>
+  </message>
+  <message>
+   <source>θ bottom [°]</source>
+   <translation>θ unten [°]</translation>
+  </message>
+  <message>
+   <source>Stretch along</source>
+   <translation>Streckung längs</translation>
+  </message>
+  <message>
+   <source>Stretch across</source>
+   <translation>Streckung quer</translation>
+  </message>
+  <message>
+   <source>Channels top</source>
+   <translation>Kanäle oben</translation>
+  </message>
+  <message>
+   <source>Channels bottom</source>
+   <translation>Kanäle unten</translation>
+  </message>
+  <message>
+   <source>Domains</source>
+   <translation>Domänen</translation>
+  </message>
+  <message>
+   <source>Channels of the Selection as Solids</source>
+   <translation>Kanäle der Auswahl als Körper</translation>
+  </message>
+  <message>
+   <source>Shows the real channels of the selected domains in the cell</source>
+   <translation>Zeigt die wirklichen Kanäle der gewählten Domänen in der Zelle</translation>
+  </message>
+  <message>
+   <source>Close the panel first</source>
+   <translation>Zuerst das Eingabefeld schließen</translation>
+  </message>
+  <message>
+   <source>Channels, bottom plate</source>
+   <translation>Kanäle, untere Platte</translation>
+  </message>
+  <message>
+   <source>Channels, top plate</source>
+   <translation>Kanäle, obere Platte</translation>
+  </message>
+  <message>
+   <source>director θ</source>
+   <translation>Direktor θ</translation>
+  </message>
+  <message>
+   <source>Target and flat sheet</source>
+   <translation>Ziel und flacher Film</translation>
+  </message>
+  <message>
+   <source>twist Δθ</source>
+   <translation>Verdrillung Δθ</translation>
+  </message>
+  <message>
+   <source>distance from the target</source>
+   <translation>Abstand vom Ziel</translation>
+  </message>
+  <message>
+   <source>Predicted shape</source>
+   <translation>Vorhergesagte Form</translation>
+  </message>
+  <message>
+   <source>channel direction</source>
+   <translation>Kanalrichtung</translation>
+  </message>
+  <message>
    <source>Face</source>
    <translation>Gesicht</translation>
   </message>
@@ -190,10 +366,6 @@
   <message>
    <source>Sheet</source>
    <translation>Film</translation>
-  </message>
-  <message>
-   <source>Domains</source>
-   <translation>Domänen</translation>
   </message>
   <message>
    <source>Channels</source>

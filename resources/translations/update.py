@@ -24,10 +24,15 @@ CONTEXT = "LceMold"
 """Of all texts of the panels and commands; the preferences have their form's name."""
 
 
+NAMED = ("HEADS", "TITLES")
+"""Tables whose values are shown."""
+
+
 def window_texts() -> list[str]:
-    """What commands and panels say: arguments of `tr`, and the words of the table of steps."""
+    """What commands, panels and legends say: arguments of `tr`, and the words of tables and pictures."""
     found = []
-    for path in sorted((ROOT / "lce_workbench" / "gui").glob("*.py")):
+    code = ROOT / "lce_workbench"
+    for path in (*sorted((code / "gui").glob("*.py")), code / "app" / "pictures.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
                 words = [arg.value for arg in node.args if isinstance(arg, ast.Constant) and isinstance(arg.value, str)]
@@ -35,6 +40,12 @@ def window_texts() -> list[str]:
                     found += words[:1]
                 if node.func.id == "Step" and len(words) > 5:
                     found += [words[2], words[3], words[5]]
+                if node.func.id == "Look":
+                    found += words[2:4]
+                if node.func.id in {"Picture", "Scale"}:
+                    found += words[:1]
+            if isinstance(node, ast.AnnAssign) and ast.unparse(node.target) in NAMED:
+                found += list(ast.literal_eval(node.value).values())
     tree = ast.parse((ROOT / "lce_workbench" / "app" / "session.py").read_text(encoding="utf-8"))
     tables = {node.target.id: node.value for node in tree.body if isinstance(node, ast.AnnAssign)}
     found += [key.value for key in tables["EXAMPLES"].keys]

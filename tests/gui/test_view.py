@@ -1,5 +1,7 @@
 """The 3D view: every picture, its legend and its lines, picking, the table, the cell apart and cut open."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import sheets
@@ -7,6 +9,7 @@ import view_steps as steps
 from freecad_call import FreeCAD
 from processes import display
 
+from lce_solver.types import Surface
 from lce_workbench.core import jobfile
 from lce_workbench.core.channels import hatch
 from lce_workbench.core.domains import PLATES, partition
@@ -23,7 +26,9 @@ width_um = 4.0
 spacing_um = 6.0
 """
 
-DESIGN = sheets.design()
+FLAT = sheets.design()
+X, Y = FLAT.uv.T
+DESIGN = replace(FLAT, surface=Surface(np.column_stack([X, Y, 0.15 * X**2 - 0.1 * Y**2]), FLAT.surface.faces))
 
 
 @pytest.fixture(scope="module")
@@ -67,6 +72,7 @@ def test_as_many_lines_are_drawn_as_there_are_channels(seen, plate):
     domains = partition(DESIGN)
     channels = hatch(domains, plate, jobfile.parse(JOB, "job").channels)
     assert seen["pictures"][f"channels_{plate}"]["lines"] == len(channels) + 3 * len(domains)
+    assert seen["pictures"][f"channels_{plate}"]["count"] == len(channels)
 
 
 def test_each_triangle_has_its_director_on_the_sheet_and_on_the_target(seen):
