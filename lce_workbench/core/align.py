@@ -9,6 +9,7 @@ all clusters read the same, interpolate between the bars.
 from __future__ import annotations
 
 import csv
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -142,36 +143,78 @@ def read(path: Path) -> Readings:
     """
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as fault:
+        notes = [line.strip('#;,\t "') for line in lines if _is_note(line)]
+        said = dict(note.split(maxsplit=1) for note in notes if " " in note)
+        head, rows = _rows([line for line in lines if line.strip() and not _is_note(line)])
+    except (OSError, UnicodeDecodeError, csv.Error) as fault:
         msg = f"{path} cannot be read ({fault}); give the readings.csv that lies beside the masks"
         raise InputError(msg) from None
-    said = dict(line[1:].split(maxsplit=1) for line in lines if line.startswith("#") and len(line.split()) > 2)
-    table = csv.DictReader(line for line in lines if line.strip() and not line.startswith("#"))
-    missing = [name for name in COLUMNS if name not in (table.fieldnames or ())]
+    missing = [name for name in COLUMNS if name not in head]
     if missing or not {"sheet_mm", "tolerance_um"} <= set(said):
         what = f"the column {missing[0]}" if missing else "the line '# sheet_mm' or '# tolerance_um'"
         msg = f"{path} lacks {what}; fill in the readings.csv that lies beside the masks"
         raise InputError(msg)
-    rows = [row for row in table if (row["dx_um"] or "").strip() and (row["dy_um"] or "").strip()]
+    rows = [row for row in rows if row.get("dx_um", "").strip() and row.get("dy_um", "").strip()]
     values = np.array([[_number(path, row, name) for name in COLUMNS[1:]] for row in rows]).reshape(-1, 5)
-    sheet = [_number(path, {"mark": "sheet_mm", "value": v}, "value") for v in said["sheet_mm"].split()]
+    sheet = [_number(path, {"mark": "# sheet_mm", "sheet_mm": v}, "sheet_mm") for v in said["sheet_mm"].split()]
     if len(sheet) != 4:
         msg = f"{path}: '# sheet_mm' needs four numbers; copy the line from the form beside the masks"
         raise InputError(msg)
-    tolerance = _number(path, {"mark": "tolerance_um", "value": said["tolerance_um"]}, "value")
+    tolerance = _number(path, {"mark": "# tolerance_um", **said}, "tolerance_um")
+    _refuse_millimetres(path, values)
     return Readings(values[:, :2], values[:, 2:4] * UM, values[:, 4] * UM, Rect(*sheet), tolerance * UM)
 
 
-def _number(path: Path, row: dict[str, str], name: str) -> float:
+def _is_note(line: str) -> bool:
+    """Whether a line is none of the table; spreadsheets quote it where it holds their delimiter."""
+    return line.lstrip('"').startswith("#")
+
+
+def _rows(lines: Sequence[str]) -> tuple[list[str], list[dict[str, str]]]:
+    """Names of the columns, and the lines by them; where a spreadsheet wrote ; or tabs, a comma is a decimal point."""
+    if not lines:
+        return [], []
+    delimiter = next((sign for sign in ";\t" if sign in lines[0]), ",")
+    point = "," if delimiter == "," else "."
+    head, *rows = csv.reader(lines, delimiter=delimiter)
+    longer = [row[0] for row in rows if any(row[len(head) :])]
+    if longer:
+        msg = f"line {longer[0]!r} has more columns than the head; write decimals with a point"
+        raise csv.Error(msg)
+    return head, [dict(zip(head, (value.replace(",", point) for value in row), strict=False)) for row in rows]
+
+
+RANGES = {
+    "dx_um": (-LARGEST, LARGEST),
+    "dy_um": (-LARGEST, LARGEST),
+    "resolution_um": (0.001, LARGEST),
+    "tolerance_um": (0.001, 1000.0),
+}
+"""What a number of the form may be; places are within a metre [mm]."""
+
+
+def _number(path: Path, row: Mapping[str, str], name: str) -> float:
+    found = row.get(name, "").strip()
     try:
-        value = float(row[name])
-    except (TypeError, ValueError):
+        value = float(found)
+    except ValueError:
         value = np.nan
-    limit = {"dx_um": LARGEST, "dy_um": LARGEST}.get(name, np.inf)
-    if not abs(value) <= limit or not np.isfinite(value) or (name == "resolution_um" and value <= 0):
-        msg = f"{path}, line {row['mark']!r}: {name} = {row[name]!r} is not a number in range; read the mark again"
+    low, high = RANGES.get(name, (-1000.0, 1000.0))
+    if not low <= value <= high:
+        msg = (
+            f"{path}, line {row['mark']!r}: {name} = {found!r} is not a number from {low:g} to {high:g}; mend the line"
+        )
         raise InputError(msg)
     return value
+
+
+def _refuse_millimetres(path: Path, values: Floats) -> None:
+    """Shifts (n, 5), with place and resolution, that are all far below what can be read are in another unit."""
+    size, step = np.abs(values[:, 2:4]), values[:, 4:]
+    if size.any() and np.all(size < step / 10):
+        what = "all shifts are below a tenth of resolution_um"
+        msg = f"{path}: {what}; write dx_um and dy_um in um, or a finer resolution_um"
+        raise InputError(msg)
 
 
 def told(found: Alignment) -> dict[str, float | bool]:

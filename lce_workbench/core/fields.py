@@ -90,8 +90,8 @@ FIELDS: dict[str, Field] = {
 """Every test field; the job names those that are wanted."""
 
 
-def places(frame: Frame, wanted: Sequence[str]) -> dict[str, Floats | None]:
-    """Middle (2,) of each wanted field [mm]; None where no band has room.
+def require_known(wanted: Sequence[str]) -> None:
+    """Refuse names of fields that do not exist.
 
     Raises
     ------
@@ -102,6 +102,10 @@ def places(frame: Frame, wanted: Sequence[str]) -> dict[str, Floats | None]:
     if unknown:
         msg = f"marks.fields: {unknown[0]!r} is unknown; known are {', '.join(FIELDS)}"
         raise InputError(msg)
+
+
+def places(frame: Frame, wanted: Sequence[str]) -> dict[str, Floats | None]:
+    """Middle (2,) of each wanted field, a name of `FIELDS` [mm]; None where no band has room."""
     free = [band.x0 for band in frame.bands]
     found: dict[str, Floats | None] = {}
     for name in wanted:

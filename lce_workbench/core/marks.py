@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lce_solver.errors import InputError
 from lce_workbench.core.domains import Domains, Plate
 from lce_workbench.core.frame import EDGE, MARK_BOX, Frame
 from lce_workbench.core.job import ChannelSpec, Job, Marks
@@ -62,8 +63,8 @@ ANGLE: dict[Plate, float] = {"bottom": np.pi / 2, "top": 0.0}
 LABEL_INSET = LAND / 2
 """The runs of a letter touch; their gratings must not [um]."""
 
-FIRST = box(-121, -50, -20, 51)
-"""The square that only the first cluster has."""
+LONGEST = 20
+"""Characters of the user's label; a dot of more would be too small for the lines that fill it."""
 
 SCALE_MM = (0, 1, 5, 10)
 """Ticks of the scale bars."""
@@ -118,8 +119,18 @@ def digits() -> Shape:
 
 
 def code(wanted: Wanted) -> Shape:
-    """The design's code, with the user's label before it."""
-    return text(f"{wanted.spec.label} {wanted.code}".strip(), min(10.0, 900.0 / (6 * len(wanted.spec.label) + 54)))
+    """The design's code, with the user's label before it.
+
+    Raises
+    ------
+    InputError
+        The label is too long to be read, or holds a character that cannot be drawn.
+    """
+    label = wanted.spec.label
+    if len(label) > LONGEST:
+        msg = f"marks.label has {len(label)} characters, too many to be read; give {LONGEST} at most"
+        raise InputError(msg)
+    return text(f"{label} {wanted.code}".strip(), min(10.0, 900.0 / (6 * len(label) + 54)))
 
 
 @dataclass(frozen=True)
@@ -198,7 +209,7 @@ def exposed(frame: Frame, plate: Plate, job: Job, code: str) -> dict[str, Shape]
     Raises
     ------
     InputError
-        The job's label holds a character that cannot be drawn.
+        The job's label cannot be drawn.
     """
     layers = _placed(frame, plate, Wanted(job.marks, code), list(MARKS.values()))
     bars, numbers = scale_bars(frame, plate)

@@ -12,10 +12,10 @@ from lce_solver.errors import InputError
 from lce_solver.types import Floats
 from lce_workbench.core.channels import ChannelField, corners
 from lce_workbench.core.domains import Plate
-from lce_workbench.core.fields import fields
+from lce_workbench.core.fields import fields, require_known
 from lce_workbench.core.frame import Frame
 from lce_workbench.core.job import Job
-from lce_workbench.core.marks import exposed, fingerprint
+from lce_workbench.core.marks import Wanted, code, exposed, fingerprint
 from lce_workbench.core.units import NM
 
 Nanometres = NDArray[np.int32]
@@ -104,7 +104,7 @@ def compose(frame: Frame, field: ChannelField, job: Job, seams: Floats = NO_SEAM
     InputError
         Lines or lands are finer than the writer's mode, or a label or test field is not known.
     """
-    _refuse_too_fine(job)
+    refuse_unwritable(job)
     plate = field.plate
     shapes = {
         **exposed(frame, plate, job, fingerprint(field.domains, field.spec)),
@@ -128,16 +128,25 @@ def _lines(segments: Floats) -> Floats:
     return np.stack([start - side, end - side, end + side, start + side], axis=1)
 
 
-def _refuse_too_fine(job: Job) -> None:
-    finest = job.output.writer_um
+def refuse_unwritable(job: Job) -> None:
+    """Refuse what no mask can hold, whatever the design will be.
+
+    Raises
+    ------
+    InputError
+        Lines or lands are finer than the writer's mode, or a label or test field cannot be drawn.
+    """
+    finest, spec = job.output.writer_um, job.channels
     for key, found, fault in (
-        ("width_um", job.channels.width_um, "cannot be written"),
-        ("spacing_um", job.channels.spacing_um, "would merge its neighbours"),
-        ("guard_um", 2 * job.channels.guard_um, "doubled, would merge channels across the domains' borders"),
+        ("width_um", spec.width_um, "so the channels cannot be written"),
+        ("spacing_um", spec.spacing_um, "so a channel would merge with its neighbours"),
+        ("guard_um", 2 * spec.guard_um, "even doubled, so channels would merge across the domains' borders"),
     ):
         if found < finest:
             msg = (
-                f"channels.{key} = {getattr(job.channels, key):g} {fault} by a writer whose finest line and land is "
-                f"output.writer_um = {finest:g} um; make it larger or choose a finer mode"
+                f"channels.{key} = {getattr(spec, key):g} is finer than output.writer_um = {finest:g} um, the writer's "
+                f"finest line and land, {fault}; make it larger or choose a finer mode"
             )
             raise InputError(msg)
+    code(Wanted(job.marks))
+    require_known(job.marks.fields)

@@ -108,8 +108,17 @@ def test_command(tmp_path, capsys):
     ("change", "sentence"),
     [
         (lambda t: t.replace(",3,-1,", ",three,-1,", 1), "dx_um = 'three' is not a number"),
-        (lambda t: t.replace(",3,-1,", ",3,-1000,", 1), "dy_um = '-1000' is not a number in range"),
+        (lambda t: t.replace(",3,-1,", ",nan,-1,", 1), "dx_um = 'nan' is not a number"),
+        (lambda t: t.replace(",3,-1,", ",3,-1000,", 1), "dy_um = '-1000' is not a number from -150 to 150"),
         (lambda t: t.replace(",3,-1,1", ",3,-1,0", 1), "resolution_um = '0'"),
+        (lambda t: t.replace(",3,-1,1", ",3,-1,1e308"), "resolution_um = '1e308'"),
+        (lambda t: t.replace(",3,-1,1", ",3,-1", 1), "resolution_um = ''"),
+        (lambda t: t.replace(",3,-1,", ',"3,5",-1,', 1), "dx_um = '3,5'"),
+        (lambda t: t.replace(",3,-1,", ",3,5,-1,5,", 1), "has more columns than the head; write decimals with a point"),
+        (lambda t: t.replace(",3,-1,", ",0.003,-0.001,"), "write dx_um and dy_um in um"),
+        (lambda t: t.replace("tolerance_um 8", "tolerance_um -8"), "tolerance_um = '-8'"),
+        (lambda t: t.replace("lower left", "l" * 200_000), "field larger than"),
+        (lambda _: "", "lacks the column mark"),
         (lambda t: t.replace("dx_um,", "dx,"), "lacks the column dx_um"),
         (lambda t: t.replace("# sheet_mm", "# sheet"), "lacks the line"),
         (lambda t: t.replace("# sheet_mm", "# sheet_mm 1"), "needs four numbers"),
@@ -123,6 +132,20 @@ def test_bad_forms_are_one_sentence_and_2(tmp_path, capsys, change, sentence):
     said = capsys.readouterr().err
     assert sentence in said
     assert said.count("\n") == 1
+
+
+def test_a_form_that_a_spreadsheet_saved_with_decimal_commas_is_the_same(tmp_path):
+    path = filled(tmp_path / "r.csv", [(3, -1)] * 8)
+    plain = path.read_text().replace(",3,-1,", ",2.5,-1.5,")
+    path.write_text(plain)
+    want = read(path)
+    for delimiter, tail in ((";", ";;;;;"), ("\t", "")):
+        quoted = [f'"{line}"' if line.startswith("#") and delimiter in line else line for line in plain.splitlines()]
+        lines = [line + tail if "#" in line else line.replace(",", delimiter) for line in quoted]
+        path.write_text("\r\n".join(line if "#" in line else line.replace(".", ",") for line in lines))
+        found = read(path)
+        assert all(np.array_equal(getattr(found, name), getattr(want, name)) for name in ("at", "shift", "resolution"))
+        assert (found.sheet, found.tolerance) == (want.sheet, want.tolerance)
 
 
 def test_a_missing_form_is_2(tmp_path, capsys):
