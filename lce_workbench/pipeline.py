@@ -14,6 +14,7 @@ from lce_solver.types import Progress, Severity, silent
 from lce_workbench import __version__
 from lce_workbench.cad.step import EXTRAS
 from lce_workbench.core.job import Job
+from lce_workbench.core.mask import refuse_unwritable
 from lce_workbench.export import EXPORTERS
 from lce_workbench.export.outlines import OUTLINES
 from lce_workbench.freecad_child import freecad
@@ -43,6 +44,7 @@ def build(
         A fault that leaves ``out`` as it was.
     """
     _require_formats(job)
+    refuse_unwritable(job)
     if ("cad" in names and job.output.freecad) or ("drawings" in names and job.output.drawings):
         freecad()
     anew = names[0] == "design"

@@ -105,7 +105,14 @@ def require_known(wanted: Sequence[str]) -> None:
 
 
 def places(frame: Frame, wanted: Sequence[str]) -> dict[str, Floats | None]:
-    """Middle (2,) of each wanted field, a name of `FIELDS` [mm]; None where no band has room."""
+    """Middle (2,) of each wanted field [mm]; None where no band has room.
+
+    Raises
+    ------
+    InputError
+        A field does not exist.
+    """
+    require_known(wanted)
     free = [band.x0 for band in frame.bands]
     found: dict[str, Floats | None] = {}
     for name in wanted:

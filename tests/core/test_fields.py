@@ -101,9 +101,12 @@ def test_the_job_sheet_says_what_the_files_hold():
 @pytest.mark.parametrize(
     ("spec", "sentence"),
     [
-        (ChannelSpec(width_um=0.7), r"channels\.width_um = 0\.7 cannot be written by a writer"),
-        (ChannelSpec(spacing_um=0.5), r"channels\.spacing_um = 0\.5 would merge its neighbours"),
-        (ChannelSpec(guard_um=0.3), r"channels\.guard_um = 0\.3 doubled, would merge"),
+        (
+            ChannelSpec(width_um=0.7),
+            r"channels\.width_um = 0\.7 is finer than output\.writer_um = 0\.8 um.* cannot be written",
+        ),
+        (ChannelSpec(spacing_um=0.5), r"channels\.spacing_um = 0\.5 is finer .* would merge with its neighbours"),
+        (ChannelSpec(guard_um=0.3), r"channels\.guard_um = 0\.3 is finer .* even doubled, so channels would merge"),
     ],
 )
 def test_what_the_writer_cannot_resolve_is_refused(spec, sentence):

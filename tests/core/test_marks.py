@@ -13,6 +13,7 @@ from lce_workbench.core.job import Job, Marks
 from lce_workbench.core.marks import (
     ANGLE,
     LABEL_INSET,
+    LONGEST,
     MARKS,
     PIXEL,
     RINGS,
@@ -165,6 +166,15 @@ def test_a_label_that_cannot_be_drawn_is_refused():
             text(label, PIXEL)
     with pytest.raises(InputError, match=r"'\\xdc'"):
         exposed(FRAME, "top", Job(marks=Marks(label="\xdc")), CODE)
+
+
+def test_a_label_that_could_not_be_read_is_refused():
+    """The grating needs two lines at least to fill the dots of the longest that is drawn."""
+    longest = Job(marks=Marks(label="A" * LONGEST))
+    printed = exposed(FRAME, "top", longest, CODE)["LABELS"]
+    assert np.ptp(printed[..., 0], axis=1).min() > 4 * UM
+    with pytest.raises(InputError, match=r"^marks\.label has 21 characters, too many to be read; give 20 at most"):
+        exposed(FRAME, "top", Job(marks=Marks(label="A" * (LONGEST + 1))), CODE)
 
 
 @pytest.mark.parametrize("shift", [0, 3, -7])
