@@ -1,7 +1,8 @@
-"""Convex polygons cut along the outline of the sheet, which may be concave, into convex pieces."""
+"""Convex polygons cut along the rims of the sheet, which may be concave and have holes, into convex pieces."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +19,7 @@ TOUCH = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """Polygons cut along an outline."""
+    """Polygons cut along the rims of a sheet."""
 
     whole: Ints
     """(n,) polygons that lie inside as they are."""
@@ -28,13 +29,13 @@ class Cut:
     """(m,) the polygon that each piece is of."""
 
 
-def cut(polygons: Floats, outline: Floats) -> Cut:
-    """Cut convex ``polygons`` (n, k, 2) along a simple ``outline`` (m, 2), both counter-clockwise; corners may repeat.
+def cut(polygons: Floats, rims: Sequence[Floats]) -> Cut:
+    """Cut convex ``polygons`` (n, k, 2), counter-clockwise, along simple ``rims`` (m, 2): an outline and its holes.
 
     A polygon is divided by the line of an edge that crosses it, then its parts by the next edge, until no edge crosses
-    any part: so the pieces are convex and cover what lies inside exactly.
+    any part: so the pieces are convex and cover what lies inside exactly. Corners may repeat.
     """
-    edges = np.stack([outline, np.roll(outline, -1, axis=0)], axis=1)
+    edges = _edges(rims)
     touched: dict[int, list[Floats]] = {}
     low, high = polygons.min(axis=1), polygons.max(axis=1)
     for edge in edges:
@@ -44,16 +45,21 @@ def cut(polygons: Floats, outline: Floats) -> Cut:
     rim = np.array(sorted(touched), dtype=np.int64)
     others = np.setdiff1d(np.arange(len(polygons)), rim)
     divided = [(piece, i) for i in rim.tolist() for piece in _divided(distinct(polygons[i]), touched[i])]
-    kept = inside(np.array([piece.mean(axis=0) for piece, _ in divided]).reshape(-1, 2), outline)
+    kept = inside(np.array([piece.mean(axis=0) for piece, _ in divided]).reshape(-1, 2), rims)
     pieces, owner = zip(*(found for found, good in zip(divided, kept, strict=True) if good), strict=True) or ((), ())
-    return Cut(others[inside(polygons[others].mean(axis=1), outline)], pieces, np.array(owner, dtype=np.int64))
+    return Cut(others[inside(polygons[others].mean(axis=1), rims)], pieces, np.array(owner, dtype=np.int64))
 
 
-def inside(points: Floats, outline: Floats) -> Bools:
-    """Which of ``points`` (n, 2) lie inside the outline: a ray to the right crosses it an odd number of times."""
+def _edges(rims: Sequence[Floats]) -> Floats:
+    """(n, 2, 2) edges of closed rings."""
+    return np.concatenate([np.stack([rim, np.roll(rim, -1, axis=0)], axis=1) for rim in rims])
+
+
+def inside(points: Floats, rims: Sequence[Floats]) -> Bools:
+    """Which of ``points`` (n, 2) lie in the sheet: a ray to the right crosses its rims an odd number of times."""
     x, y = points.T
     odd = np.zeros(len(points), dtype=bool)
-    for (ax, ay), (bx, by) in zip(outline, np.roll(outline, -1, axis=0), strict=True):
+    for (ax, ay), (bx, by) in _edges(rims):
         if ay != by:
             odd ^= ((ay <= y) != (by <= y)) & (x < ax + (y - ay) * (bx - ax) / (by - ay))
     return odd

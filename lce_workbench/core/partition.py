@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from lce_solver.errors import InputError
 from lce_solver.judge import rms, stretch_errors
 from lce_solver.types import Design, Finding, Severity, Status, line_angle
 from lce_workbench.core.borders import Borders, borders
@@ -29,16 +28,13 @@ def divide(design: Design, job: Job) -> tuple[Domains, tuple[Finding, ...]]:
     Raises
     ------
     InputError
-        The sheet is too small for one domain, or has holes and is not cut into triangles.
+        The sheet is too small for one domain.
     """
     domains, kind = partition(design), job.domains.kind
     if design.flattening.status in FOLDED:
         return domains, ()  # no mold is made of it
     if kind in TESSELLATIONS:
-        if domains.holes:
-            msg = f"domains.kind = {kind!r} cannot tile a sheet with holes; let domains.kind be 'triangles'"
-            raise InputError(msg)
-        domains = sample(design, TESSELLATIONS[kind](domains.outline, job.domains.size))
+        domains = sample(design, TESSELLATIONS[kind]((domains.outline, *domains.holes), job.domains.size))
     found = borders(domains)
     report = [_sizes(domains), _steps(domains, found)]
     if kind in TESSELLATIONS:
@@ -75,7 +71,7 @@ def _steps(domains: Domains, found: Borders) -> Finding:
 
 def covered(domains: Domains) -> Finding:
     """How much of the sheet has no domain: specks at its rim."""
-    whole = float(signed_area(domains.outline[None])[0])
+    whole = sum(float(signed_area(rim[None])[0]) for rim in (domains.outline, *domains.holes))  # holes are clockwise
     lost = max(1 - float(domains.area.sum()) / whole, 0.0)
     severity = Severity.INFO if lost <= MOST_LOST else Severity.WARNING
     text = f"{lost:.2%} of the sheet, in pieces at its rim too small for a domain, stays without channels"

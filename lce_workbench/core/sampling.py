@@ -8,10 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from lce_solver.directors import Lines, sampled, vertex_line_field
-from lce_solver.topology import boundary_loops
 from lce_solver.types import Design, Floats, Ints, line_angle
 from lce_workbench.core.borders import locate
-from lce_workbench.core.domains import Domains, signed_area
+from lce_workbench.core.domains import Domains, partition, signed_area
 
 DIVISION = 3
 """Each triangle of the design is asked at the centres of this number squared of equal parts."""
@@ -38,9 +37,8 @@ def sample(design: Design, rings: Sequence[Floats]) -> Domains:
     polygons = np.full((len(rings), width), -1)
     for row, end, ring in zip(polygons, ends.tolist(), rings, strict=True):
         row[: len(ring)] = np.arange(end - len(ring), end)
-    outline = design.uv[boundary_loops(design.surface.faces)[0]]
-    stretch = _stretches(inside, theta)
-    return Domains(np.concatenate(rings), polygons, theta, mean["twist"].real, stretch, outline)
+    sheet, stretch = partition(design), _stretches(inside, theta)
+    return Domains(np.concatenate(rings), polygons, theta, mean["twist"].real, stretch, sheet.outline, sheet.holes)
 
 
 def _quadrature(rings: Sequence[Floats]) -> tuple[Floats, Floats, Ints]:

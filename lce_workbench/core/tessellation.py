@@ -1,12 +1,12 @@
 """Convex tessellations of the flat sheet: hexagons, and the Voronoi cells of points that are their centres of mass.
 
-At the rim a cell is cut along the sheet's outline into convex pieces. Specks are left out: at a concave corner of the
-outline these are thin wedges.
+At the rim, and at holes, a cell is cut along it into convex pieces. Specks are left out: at a concave corner of the rim
+these are thin wedges.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from scipy.spatial import Voronoi
@@ -31,12 +31,12 @@ SETTLED = 1e-2
 ROOT3 = np.sqrt(3)
 
 
-def hexagons(outline: Floats, size: float) -> list[Floats]:
+def hexagons(rims: Sequence[Floats], size: float) -> list[Floats]:
     """Regular hexagons, ``size`` from centre to centre, one of them about the origin, cut at the rim.
 
     Parameters
     ----------
-    outline : (n, 2) rim of the sheet, counter-clockwise [mm].
+    rims : (n, 2) of the sheet, the outline first, then those of its holes [mm].
 
     Returns
     -------
@@ -49,32 +49,32 @@ def hexagons(outline: Floats, size: float) -> list[Floats]:
     """
     corner = np.pi / 3 * (np.arange(6) + 0.5)
     one = size / ROOT3 * np.stack([np.cos(corner), np.sin(corner)], axis=1)
-    cells = lattice(outline, size)[:, None] + one
-    return _pieces(cells, cut(cells, outline), size)
+    cells = lattice(rims[0], size)[:, None] + one
+    return _pieces(cells, cut(cells, rims), size)
 
 
-def voronoi(outline: Floats, size: float) -> list[Floats]:
+def voronoi(rims: Sequence[Floats], size: float) -> list[Floats]:
     """Cells of a centroidal Voronoi tessellation by Lloyd's method, as many as hexagons of ``size`` would be.
 
     It starts from the hexagons' centres inside the sheet: in the middle the cells stay near hexagons, at the rim they
     adapt to it (Du, Faber, Gunzburger, SIAM Review 41, 637 (1999)). Arguments, result and errors as for `hexagons`.
     """
-    seeds = lattice(outline, size)
-    seeds = seeds[inside(seeds, outline)]
+    seeds = lattice(rims[0], size)
+    seeds = seeds[inside(seeds, rims)]
     for _ in range(ROUNDS):
-        cells = _cells(seeds, outline)
-        found = cut(cells, outline)
+        cells = _cells(seeds, rims[0])
+        found = cut(cells, rims)
         centres, kept = _centres(cells, found)
         moved = np.linalg.norm(centres - seeds[kept], axis=1).max(initial=0.0)
         seeds = centres
         if moved < SETTLED * size:
             break
-    cells = _cells(seeds, outline)
-    return _pieces(cells, cut(cells, outline), size)
+    cells = _cells(seeds, rims[0])
+    return _pieces(cells, cut(cells, rims), size)
 
 
-TESSELLATIONS: dict[str, Callable[[Floats, float], list[Floats]]] = {"hexagons": hexagons, "voronoi": voronoi}
-"""Ways to divide a sheet of given outline into pieces of given size."""
+TESSELLATIONS: dict[str, Callable[[Sequence[Floats], float], list[Floats]]] = {"hexagons": hexagons, "voronoi": voronoi}
+"""Ways to divide a sheet of given rims into pieces of given size."""
 
 
 def lattice(outline: Floats, size: float) -> Floats:

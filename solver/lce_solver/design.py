@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -11,21 +11,25 @@ import numpy as np
 from lce_solver import judge
 from lce_solver.assess import assess
 from lce_solver.bounded import FOLLOWED, cost, retwisted
-from lce_solver.contest import Finalist, compete
+from lce_solver.contest import Finalist, compete, transferred
 from lce_solver.errors import InputError
 from lce_solver.family import steer
 from lce_solver.feasible import bounded
 from lce_solver.geometry import area_vectors, face_areas
 from lce_solver.metric import Stop
-from lce_solver.plane import rectangle_angles, turn
+from lce_solver.plane import long_side_along_x, rectangle_angles, turn
 from lce_solver.twist import bending_left, second_form
-from lce_solver.types import Design, Finding, Flattening, Floats, Material, Progress, Surface, line_angle, silent
+from lce_solver.types import Design, Finding, Flattening, Floats, Ints, Material, Progress, Surface, line_angle, silent
+
+Resample = Callable[[float], Surface]
 
 SMOOTHING = 0.002
 """Takes the worst jumps of the director for no error of the stretches to speak of. Ten times as much halves the jumps
 on a real face, but the sheet then ends farther from it."""
 SAME = 1e-3
 """Finalists whose scores differ by less than this part are one solution."""
+OFF = 0.05
+"""A mesh whose edges on the sheet are off the wanted ones by more than this part is made anew."""
 SIDEWAYS = 0.1
 """If less than this of the x axis is seen along the mean normal, the y axis points right instead."""
 
@@ -49,6 +53,8 @@ def designs(
     tolerance: float = 1e-8,
     max_iterations: int = 5000,
     smoothing: float = SMOOTHING,
+    edge: float = 0.0,
+    resample: Resample | None = None,
     progress: Progress = silent,
 ) -> Iterator[Design]:
     """Design the flat sheet that heats into ``surface``: one of each finalist of the competition, the best first.
@@ -67,6 +73,8 @@ def designs(
     twist_limit : largest twist either way; what is beyond is cut off [rad].
     starts : number of directions of the first stretch that compete.
     smoothing : weight of the squared `smoothness.jumps` between triangles against the error of the stretches.
+    edge : mean edge of the triangles on the sheet that is wanted [mm]; ``resample`` makes it so.
+    resample : the target's mesh with edges so many times as long; how large the sheet is shows when it is solved.
 
     Raises
     ------
@@ -80,9 +88,16 @@ def designs(
     stop = Stop(tolerance, max_iterations)
     finalists, competed = compete(surface, material, starts, stop, progress, smoothing=smoothing)
     for one in _distinct(finalists):
-        flat = steer(surface, one.flat, material, stop, smoothing=smoothing)
-        plan = _laid(surface, flat, material, width, thickness)
-        records = tuple(replace(start, winner=start.angle == one.start.angle) for start in competed)
+        mesh, made, flat = surface, one, steer(surface, one.flat, material, stop, smoothing=smoothing)
+        factor = edge / flat_edge(flat.uv, surface.faces, width) if resample else 1.0
+        if resample and abs(factor - 1) > OFF:
+            mesh = resample(factor)
+            made = transferred(replace(one, flat=flat), surface, mesh, material, stop, smoothing=smoothing)
+            flat = steer(mesh, made.flat, material, stop, smoothing=smoothing)
+        plan = _laid(mesh, flat, material, width, thickness)
+        records = tuple(
+            replace(made.start, winner=True) if start.angle == one.start.angle else start for start in competed
+        )
         form = second_form(plan.surface, plan.uv)
         plan = retwisted(
             replace(plan, starts=records),
@@ -103,6 +118,12 @@ def _distinct(finalists: tuple[Finalist, ...]) -> list[Finalist]:
         if all(abs(one.start.score - other.start.score) > SAME * other.start.score for other in kept):
             kept.append(one)
     return kept
+
+
+def flat_edge(uv: Floats, faces: Ints, width: float) -> float:
+    """Mean edge of a sheet's triangles when the long side of its smallest rectangle is ``width``."""
+    edge = np.linalg.norm(uv[faces] - uv[np.roll(faces, 1, axis=1)], axis=2).mean()
+    return float(edge) * width / float(np.ptp(long_side_along_x(uv)[:, 0]))
 
 
 def _laid(surface: Surface, flat: Flattening, material: Material, width: float, thickness: float) -> Design:

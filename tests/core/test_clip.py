@@ -10,7 +10,9 @@ from lce_workbench.core.domains import signed_area
 TURN = 2 * np.pi * np.arange(60) / 60
 STAR = (1 + 0.5 * np.cos(5 * TURN))[:, None] * np.stack([np.cos(TURN), np.sin(TURN)], axis=1)
 ELL = np.array([(-1, -1), (1, -1), (1, 0), (0, 0), (0, 1), (-1, 1)], dtype=float)
-OUTLINES = {"star": STAR, "ell": ELL, "square": np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], dtype=float)}
+SQUARE = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], dtype=float)
+HOLES = [0.4 * STAR[::-1] - 0.3, 0.2 * ELL[::-1] + 0.6]
+SHEETS = {"star": [STAR], "ell": [ELL], "square": [SQUARE], "holes": [SQUARE, *HOLES]}
 
 
 def convex(ring):
@@ -28,33 +30,33 @@ def scattered(n, size, seed):
     return ring + rng.uniform(-1.4, 1.4, (n, 1, 2))
 
 
-@pytest.mark.parametrize("name", OUTLINES)
+@pytest.mark.parametrize("name", SHEETS)
 @pytest.mark.parametrize("size", [0.08, 0.5, 3.0])
 def test_pieces_are_convex_and_cover_the_common_part(name, size):
-    polygons, outline = scattered(60, size, 3), OUTLINES[name]
-    found = cut(polygons, outline)
+    polygons, (outline, *holes) = scattered(60, size, 3), SHEETS[name]
+    found = cut(polygons, (outline, *holes))
     area = np.zeros(len(polygons))
     area[found.whole] = signed_area(polygons[found.whole])
     for piece, owner in zip(found.pieces, found.owner, strict=True):
         assert convex(piece)
         area[owner] += signed_area(piece[None])[0]
+    sheet = gdstk.boolean(gdstk.Polygon(outline), [gdstk.Polygon(hole) for hole in holes], "not", precision=1e-9)
     want = [
-        sum(p.area() for p in gdstk.boolean(gdstk.Polygon(ring), gdstk.Polygon(outline), "and", precision=1e-9))
-        for ring in polygons
+        sum(p.area() for p in gdstk.boolean(gdstk.Polygon(ring), sheet, "and", precision=1e-9)) for ring in polygons
     ]
     np.testing.assert_allclose(area, want, atol=1e-7)
 
 
 def test_an_edge_along_the_outline_cuts_nothing():
     tiles = np.array([[(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)] for x in (-1, 0) for y in (-1, 0)], dtype=float)
-    found = cut(tiles, ELL)
+    found = cut(tiles, [ELL])
     assert len(found.whole) + len(found.pieces) == 3
     assert sum(signed_area(p[None])[0] for p in found.pieces) + len(found.whole) == pytest.approx(3)
 
 
 def test_inside():
     points = np.random.default_rng(1).uniform(-1.6, 1.6, (2000, 2))
-    assert np.array_equal(inside(points, STAR), gdstk.inside(points, gdstk.Polygon(STAR)))
+    assert np.array_equal(inside(points, [STAR]), gdstk.inside(points, gdstk.Polygon(STAR)))
 
 
 def test_blunt_corners_go_and_the_ring_stays_convex_and_inside():

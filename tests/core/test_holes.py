@@ -2,16 +2,19 @@
 
 from dataclasses import replace
 
+import gdstk
 import numpy as np
 import pytest
 from sheets import design
 
-from lce_solver.errors import InputError
 from lce_solver.topology import boundary_loops
 from lce_solver.types import Surface
 from lce_workbench.core.domains import partition, signed_area
 from lce_workbench.core.job import Job
 from lce_workbench.core.partition import divide
+from lce_workbench.core.tessellation import TESSELLATIONS
+from lce_workbench.divided import arrays, read_domains
+from lce_workbench.outputs import write_design
 
 
 def holed():
@@ -34,7 +37,18 @@ def test_the_hole_is_a_rim_of_its_own_that_runs_the_other_way():
     assert domains.area.sum() == pytest.approx(outside + inside, rel=1e-12)
 
 
-def test_hexagons_do_not_fill_a_hole_unseen():
-    job = Job()
-    with pytest.raises(InputError, match="cannot tile a sheet with holes"):
-        divide(holed(), replace(job, domains=replace(job.domains, kind="hexagons")))
+@pytest.mark.parametrize("kind", TESSELLATIONS)
+def test_cells_leave_the_hole_free_and_cover_the_rest(kind, tmp_path):
+    job, plan = Job(), holed()
+    domains, found = divide(plan, replace(job, domains=replace(job.domains, kind=kind, size_um=150.0)))
+    (hole,) = domains.holes
+    left = 4.0 + float(signed_area(hole[None])[0])
+    assert 0.985 * left < domains.area.sum() <= left * (1 + 1e-12)
+    covers = next(one for one in found if one.check == "domain_cover")
+    assert covers.value == pytest.approx(1 - domains.area.sum() / left, abs=1e-9)
+    rings = [gdstk.Polygon(domains.vertices[row[row >= 0]]) for row in domains.polygons]
+    assert sum(p.area() for p in gdstk.boolean(rings, gdstk.Polygon(hole), "and", precision=1e-9)) < 1e-6
+    write_design(plan, tmp_path / "design.npz", arrays(domains))
+    back = read_domains(tmp_path / "design.npz")
+    np.testing.assert_array_equal(back.polygons, domains.polygons)
+    np.testing.assert_array_equal(back.holes[0], hole)

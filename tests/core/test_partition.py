@@ -60,7 +60,7 @@ def convex(ring):
 
 @pytest.mark.parametrize("kind", TESSELLATIONS)
 def test_pieces_are_convex_disjoint_and_cover_the_sheet(kind):
-    rings = TESSELLATIONS[kind](BEAN, 0.3)
+    rings = TESSELLATIONS[kind]([BEAN], 0.3)
     assert all(convex(ring) for ring in rings)
     area = np.array([signed_area(ring[None])[0] for ring in rings])
     whole = signed_area(BEAN[None])[0]
@@ -71,7 +71,7 @@ def test_pieces_are_convex_disjoint_and_cover_the_sheet(kind):
 
 
 def test_voronoi_cells_hold_what_is_nearest_to_their_centre_of_mass():
-    rings = voronoi(BEAN, 0.3)
+    rings = voronoi([BEAN], 0.3)
     centre = np.array([sum_of(ring) for ring in rings])
     rng = np.random.default_rng(4)
     right = []
@@ -126,7 +126,7 @@ def test_the_mismatch_knows_a_turn_and_what_it_does_to_the_stretches():
 
 
 def test_triangles_get_the_directors_of_the_domains_on_them():
-    domains = sample(PLAN, TESSELLATIONS["hexagons"](partition(PLAN).outline, 0.1))
+    domains = sample(PLAN, TESSELLATIONS["hexagons"]([partition(PLAN).outline], 0.1))
     made = as_made(PLAN, domains)
     assert np.degrees(np.sqrt(np.mean(line_difference(made.theta, PLAN.theta) ** 2))) < 1.5
     one = as_made(PLAN, replace(domains, theta=np.full(len(domains), 3.1), dtheta=np.full(len(domains), 0.02)))
@@ -166,7 +166,7 @@ def test_a_rim_that_loses_too_much_is_a_warning():
     tooth = np.array([(0.0, 0.0), (0.02, 0.0), (0.02, 0.3), (0.08, 0.3), (0.08, 0.0)])
     teeth = np.concatenate([tooth + np.array([0.1 * k, 0.0]) for k in range(20)])
     outline = np.concatenate([[(0.0, 1.0)], teeth, [(2.0, 1.0)]])
-    rings = TESSELLATIONS["hexagons"](outline, 0.5)
+    rings = TESSELLATIONS["hexagons"]([outline], 0.5)
     found = covered(replace(sample(PLAN, rings), outline=outline))
     assert found.value > found.limit
     assert found.severity is Severity.WARNING
