@@ -40,20 +40,6 @@ def ramp():
     return patch(embed, 60, 3, height=1.0)[1]
 
 
-def round_cap(edge):
-    """A round cap of the unit sphere, 50 degrees to its rim."""
-    half_angle = np.radians(50)
-
-    def embed(disk):
-        sigma = half_angle * np.linalg.norm(disk, axis=1, keepdims=True)
-        return np.hstack([half_angle * np.sinc(sigma / np.pi) * disk, np.cos(sigma)])
-
-    def circle(t):
-        return np.column_stack([np.cos(2 * np.pi * t), np.sin(2 * np.pi * t)])
-
-    return mesh(embed, circle, edge)
-
-
 def moved(surface, seed=0):
     """The same surface after a rigid motion."""
     rng = np.random.default_rng(seed)

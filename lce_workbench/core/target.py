@@ -73,7 +73,7 @@ def _shipped(job: Job, material: Material, factor: float) -> tuple[Surface, tupl
     edge = factor * job.domains.size / (flat_edge(coarse, job, material) / mean_edge(coarse))
     _require_budget(coarse, edge)
     fine = even_mesh(shape(edge), edge) if job.target.remesh else shape(edge)
-    return opened(fine, cuts), ()
+    return opened(fine, cuts, straight=job.target.remesh), ()
 
 
 def _cuts(trial: Surface, job: Job, material: Material) -> tuple[Floats, ...]:
@@ -103,7 +103,7 @@ def _resampled(surface: Surface, job: Job, material: Material, factor: float) ->
     cuts = _cuts(coarse, job, material)
     edge = factor * job.domains.size * mean_edge(coarse) / flat_edge(opened(coarse, cuts), job, material)
     _require_budget(surface, edge)
-    return opened(even_mesh(surface, edge), cuts)
+    return opened(even_mesh(surface, edge), cuts, straight=True)
 
 
 def _require_budget(surface: Surface, edge: float) -> None:

@@ -34,12 +34,19 @@ EVEN = 4
 """Rounds of averaging of the error whose peak is cut to."""
 STRIDE = 4
 """Edges between the points of a planned cut."""
+STRAIGHT = 30
+"""Rounds of averaging that make a seam straight."""
+SLIVER = 0.5
+"""A straight seam may make the smallest angle of all triangles no smaller than this part of it."""
 SNAP = 1.5
 """An end of a cut this close to the rim, in mean edges, is on the rim."""
 
 
-def opened(surface: Surface, cuts: tuple[Floats, ...]) -> Surface:
-    """The surface cut along the edges closest to ``cuts``; both sides of a cut get vertices of their own."""
+def opened(surface: Surface, cuts: tuple[Floats, ...], *, straight: bool = False) -> Surface:
+    """The surface cut along the edges closest to ``cuts``; both sides of a cut get vertices of their own.
+
+    If the cuts shall be ``straight``, the vertices along and about them are moved within the surface.
+    """
     if not cuts:
         return surface
     edge, _, count = edge_table(surface.faces)
@@ -48,7 +55,42 @@ def opened(surface: Surface, cuts: tuple[Floats, ...]) -> Surface:
         chosen |= _along(surface, cut, edge, np.unique(edge[chosen]))
     fan = fans(surface.faces, chosen)
     _, corner = np.unique(fan, return_index=True)
-    return Surface(surface.vertices[half_edges(surface.faces)[corner, 0]], fan.reshape(3, -1).T)
+    points = straightened(surface, edge[chosen & (count == 2)]) if straight else surface.vertices
+    return Surface(points[half_edges(surface.faces)[corner, 0]], fan.reshape(3, -1).T)
+
+
+def straightened(surface: Surface, seam: Ints) -> Floats:
+    """(n_v, 3) vertices moved within the surface so that the ``seam`` (k, 2) of edges runs straight.
+
+    Ends, forks and the rim stay. A seam whose triangles would become slivers stays as it is.
+    """
+    n, free = len(surface.vertices), np.bincount(seam.ravel(), minlength=len(surface.vertices)) == 2
+    free[_rim(surface)] = False
+    line, mesh = (_adjacency(pairs, n) for pairs in (seam, edges(surface.faces)))
+    about = mesh @ (mesh @ free) > 0
+    about[seam.ravel()] = about[_rim(surface)] = False
+    tree, points = igl.AABB(), np.array(surface.vertices, order="C")
+    vertices, faces = points.copy(), np.array(surface.faces, order="C")
+    tree.init(vertices, faces)
+    for _ in range(STRAIGHT):
+        for chosen, graph in ((free, line), (about, mesh)):
+            mean = (graph @ points)[chosen] / (graph @ np.ones(n))[chosen, None]
+            points[chosen] = tree.squared_distance(vertices, faces, (points[chosen] + mean) / 2)[2]
+    return points if _narrowest(points, faces) > SLIVER * _narrowest(vertices, faces) else surface.vertices
+
+
+def _adjacency(pairs: Ints, n: int) -> sparse.csr_array:
+    """(n, n) 1 where two vertices are a pair."""
+    both = np.concatenate([pairs, pairs[:, ::-1]])
+    return sparse.csr_array((np.ones(len(both)), tuple(both.T)), shape=(n, n))
+
+
+def _narrowest(points: Floats, faces: Ints) -> float:
+    """Smallest angle of all triangles [rad]."""
+    corner = points[faces]
+    ahead, back = np.roll(corner, -1, axis=1) - corner, np.roll(corner, 1, axis=1) - corner
+    across = np.linalg.norm(np.cross(ahead, back), axis=2)
+    return float(np.arctan2(across, np.einsum("fki,fki->fk", ahead, back)).min())
 
 
 def _along(surface: Surface, cut: Floats, edge: Ints, rim: Ints) -> NDArray[np.bool_]:

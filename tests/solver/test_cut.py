@@ -6,12 +6,13 @@ import pytest
 from targets import cap
 
 from lce_solver import judge
-from lce_solver.cut import _judged, handles, opened, proposed, seams
+from lce_solver.cut import _judged, _narrowest, handles, opened, proposed, seams, straightened
 from lce_solver.design import design
 from lce_solver.geometry import face_areas, mean_edge
 from lce_solver.metric import Stop, flatten, lay_flat
+from lce_solver.mirror import even_mesh
 from lce_solver.surface import check
-from lce_solver.topology import boundary_loops
+from lce_solver.topology import boundary_loops, edges
 from lce_solver.types import Material, Status, Surface
 
 MATTER = Material(0.6, 0.5, "test")
@@ -96,6 +97,29 @@ def test_a_seam_is_found_and_its_sides_lie_on_each_other():
     length = np.linalg.norm(np.diff(sheet.vertices[pairs[:, 0]], axis=1), axis=2).sum()
     assert length == pytest.approx(2.0 * 15 / 16, rel=0.02)  # straight along the tube
     assert len(seams(cap(50, edge=0.2))) == 0
+
+
+def turns(sheet):
+    """(k,) angles between successive edges of the seam, where it does not end [deg]."""
+    rim = dict(seams(sheet)[:, 0].tolist())
+    chain = [(a, b, rim[b]) for a, b in rim.items() if b in rim]
+    p, q, r = sheet.vertices[np.array(chain).T]
+    first, second = ((v / np.linalg.norm(v, axis=1, keepdims=True)) for v in (q - p, r - q))
+    return np.degrees(np.arccos(np.clip(np.einsum("ki,ki->k", first, second), -1, 1)))
+
+
+def test_a_straight_seam_turns_little_and_the_triangles_stay_good():
+    surface = even_mesh(cap(130, edge=0.05), 0.09)
+    top, rim = surface.vertices[:, 2].argmax(), surface.vertices[:, 0].argmax()
+    cut = (surface.vertices[[top, rim]],)
+    zigzag, straight = (opened(surface, cut, straight=how) for how in (False, True))
+    assert np.percentile(turns(zigzag), 90) > 25
+    assert np.percentile(turns(straight), 90) < 8
+    np.testing.assert_allclose(np.linalg.norm(straight.vertices, axis=1), 1, atol=3e-3)
+    np.testing.assert_array_equal(straight.faces, zigzag.faces)
+    assert _narrowest(straight.vertices, straight.faces) > np.radians(15)
+    bad = straightened(surface, edges(surface.faces)[:0])
+    np.testing.assert_array_equal(bad, surface.vertices)
 
 
 def test_a_cut_planned_on_a_coarse_mesh_is_made_in_a_fine_one():

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from targets import COOLED, LCE, line_difference, round_cap
+from targets import COOLED, LCE, line_difference
 
+from lce_solver import mesher
 from lce_solver.directors import sampled, vertex_lines
 from lce_solver.field import sample, sheet
 from lce_solver.fields import FIELDS, spherical_zone
@@ -25,7 +26,16 @@ def rms(values):
 
 def cap(edge):
     """A round cap of the unit sphere, 50 degrees to its rim, and its sheet, cut out of the exact spherical zone."""
-    mesh, field = round_cap(edge), spherical_zone(LCE)
+    half_angle = np.radians(50)
+
+    def embed(disk):
+        sigma = half_angle * np.linalg.norm(disk, axis=1, keepdims=True)
+        return np.hstack([half_angle * np.sinc(sigma / np.pi) * disk, np.cos(sigma)])
+
+    def circle(t):
+        return np.column_stack([np.cos(2 * np.pi * t), np.sin(2 * np.pi * t)])
+
+    mesh, field = mesher.mesh(embed, circle, edge), spherical_zone(LCE)
     x, y, z = mesh.vertices.T
     top = field.place(np.array(field.limits[1]), np.array(0.0))[2]
     along = field.limits[1] * y / top  # equal areas: x of the sheet is proportional to the height on the sphere
