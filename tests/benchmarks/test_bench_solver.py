@@ -37,7 +37,7 @@ from lce_solver.surfaces import SURFACES
 from lce_solver.topology import boundary_loops, neighbours
 from lce_solver.types import Material, Status, Surface
 from lce_solver.wirtinger import stretched
-from lce_workbench import pipeline
+from lce_workbench import stages
 from lce_workbench.core import target
 from lce_workbench.core.job import Job, Target
 
@@ -230,7 +230,7 @@ def solved(surface, pose, path):
     rotation = Rotation.random(random_state=pose).as_matrix() if pose else np.eye(3)
     write_obj(path, surface.vertices @ rotation.T + pose, surface.faces)
     job = replace(Job(), target=Target(mesh=str(path)), domains=replace(Job().domains, size_um=500.0))
-    plan = next(pipeline.solved(pipeline.Run(path.parent, job, path.parent))[0])
+    plan = next(stages.solved(stages.Run(path.parent, job, path.parent))[0])
     points, weights = plan.surface.vertices, vertex_areas(plan.surface.vertices, plan.surface.faces)
     back = Surface((points - np.average(points, axis=0, weights=weights)) @ rotation, plan.surface.faces)
     return plan, back, predict(film_of(plan)).vertices
