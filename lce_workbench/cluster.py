@@ -33,7 +33,9 @@ def client(address: str | None) -> Iterator[Client | None]:
         return
     try:
         from distributed import Client  # noqa: PLC0415 (it takes a second, and few use it)
+        from distributed.comm import get_address_host_port  # noqa: PLC0415
 
+        get_address_host_port(address)  # a client that fails half-way tells so again, at exit
         workers = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, ImportError) as fault:
         msg = f"--scheduler {address}: no Dask scheduler answers there ({fault}); start one or leave the option out"

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import csv
+import io
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -11,8 +14,11 @@ from lce_solver.errors import InputError
 from lce_workbench.core.domains import PLATES
 from lce_workbench.core.mask import LAYERS
 from lce_workbench.export.together import Piece, Placed, arranged, polygons, write
-from lce_workbench.outputs import require_unchanged, staged, write_manifest
+from lce_workbench.outputs import MANIFEST, read_manifest, require_unchanged, staged, write_manifest
 from lce_workbench.pipeline import versions
+
+STAGES = ["plate"]
+"""What the manifest says of a folder of ours."""
 
 SIZES = {"4in": 101.6, "5in": 127.0, "6in": 152.4}
 """Sides of mask plates [mm]."""
@@ -26,11 +32,13 @@ def combine(folders: Sequence[Path], size: str, out: Path) -> int:
     LceError
         A folder has no masks of ours, or they do not fit; nothing is written.
     """
-    names = [folder.resolve().name for folder in folders]
     if len({folder.resolve() for folder in folders}) < len(folders):
         msg = "a folder is named twice; name each design once"
         raise InputError(msg)
-    pieces = [_piece(folder, name, plate) for folder, name in zip(folders, names, strict=True) for plate in PLATES]
+    if (out / MANIFEST).is_file() and read_manifest(out)["stages"] != STAGES:
+        msg = f"{out} is the output folder of a design and would be lost; choose another folder with --out"
+        raise InputError(msg)
+    pieces = [_piece(folder, name, plate) for folder, name in _named(folders).items() for plate in PLATES]
     side = SIZES[size]
     placed = arranged(pieces, side)
     with staged(out) as stage:
@@ -39,12 +47,21 @@ def combine(folders: Sequence[Path], size: str, out: Path) -> int:
         _picture(placed, side, stage / "plate.png")
         inputs = [{"path": str(piece.path)} for piece in pieces]
         write_manifest(
-            stage, {"versions": versions(), "stages": ["plate"], "inputs": inputs, "findings": [], "exit_code": 0}
+            stage, {"versions": versions(), "stages": STAGES, "inputs": inputs, "findings": [], "exit_code": 0}
         )
     return count
 
 
+def _named(folders: Sequence[Path]) -> dict[Path, str]:
+    """Each folder with its name; those of the same name with their path."""
+    names = Counter(folder.resolve().name for folder in folders)
+    return {folder: name if names[name := folder.resolve().name] == 1 else str(folder) for folder in folders}
+
+
 def _piece(folder: Path, name: str, plate: str) -> Piece:
+    if not any(entry["path"] == f"mask/{plate}.gds" for entry in read_manifest(folder)["files"]):
+        msg = f"{folder} has no masks as GDSII; let its output.masks name gds and run `./lce mask` on it"
+        raise InputError(msg)
     require_unchanged(folder, f"mask/{plate}.gds")
     path = folder / "mask" / f"{plate}.gds"
     glass = next(found for layer, found in polygons(path) if layer == LAYERS["PLATE"])
@@ -54,12 +71,14 @@ def _piece(folder: Path, name: str, plate: str) -> Piece:
 
 def table(placed: Sequence[Placed]) -> str:
     """The map as text: which mask stands where, whether its pattern is the sheet's mirror image."""
-    rows = [
-        f"{item.piece.design},{item.piece.plate},{item.x:.6f},{item.y:.6f},{item.piece.size[0]:.6f},"
-        f"{item.piece.size[1]:.6f},{'yes' if item.piece.plate == 'top' else 'no'},{item.piece.path}"
-        for item in placed
-    ]
-    return "\n".join(["design,plate,x_mm,y_mm,width_mm,height_mm,mirrored,file", *rows]) + "\n"
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(["design", "plate", "x_mm", "y_mm", "width_mm", "height_mm", "mirrored", "file"])
+    for item in placed:
+        places = [f"{value:.6f}" for value in (item.x, item.y, *item.piece.size)]
+        mirrored = "yes" if item.piece.plate == "top" else "no"
+        rows.writerow([item.piece.design, item.piece.plate, *places, mirrored, item.piece.path])
+    return text.getvalue()
 
 
 def _picture(placed: Sequence[Placed], side: float, path: Path) -> None:
@@ -77,6 +96,14 @@ def _picture(placed: Sequence[Placed], side: float, path: Path) -> None:
             Rectangle((item.x - width / 2, item.y - height / 2), width, height, fc=colour, ec="k", alpha=0.3)
         )
         said = "mirrored" if item.piece.plate == "top" else "not mirrored"
-        axes.text(item.x, item.y, f"{item.piece.design}\n{item.piece.plate}\n{said}", ha="center", va="center", size=8)
+        axes.text(
+            item.x,
+            item.y,
+            f"{item.piece.design}\n{item.piece.plate}\n{said}",
+            ha="center",
+            va="center",
+            size=8,
+            parse_math=False,
+        )
     axes.set(xlabel="x [mm]", ylabel="y [mm]")
     figure.savefig(path, dpi=130, metadata={"Software": None})

@@ -209,7 +209,8 @@ def require_unchanged(folder: Path, name: str) -> None:
     recorded = {entry["path"]: entry["sha256"] for entry in read_manifest(folder)["files"]}
     path = folder / name
     if not path.is_file() or recorded.get(name) != digest(path)["sha256"]:
-        msg = f"{path} is missing or not what {MANIFEST} says; run `./lce design` again"
+        stage = "mask" if name.startswith("mask/") else "design"
+        msg = f"{path} is missing or not what {MANIFEST} says; run `./lce {stage}` again"
         raise InputError(msg)
 
 

@@ -92,6 +92,34 @@ def test_what_does_not_fit_is_refused(folders, tmp_path, capsys):
     assert "named twice" in capsys.readouterr().err
 
 
+def test_a_design_is_never_replaced(tmp_path, capsys):
+    folder = finished(tmp_path / "one", 0.2)
+    before = {path.name: path.read_bytes() for path in folder.rglob("*.*")}
+    assert main(["plate", str(folder), "--out", str(folder)]) == 2
+    assert "is the output folder of a design and would be lost" in capsys.readouterr().err
+    assert {path.name: path.read_bytes() for path in folder.rglob("*.*")} == before
+    out = tmp_path / "plate"
+    for _ in range(2):  # a plate is replaced by a plate
+        assert main(["plate", str(folder), "--out", str(out), "--quiet"]) == 0
+
+
+def test_designs_of_one_name_are_told_apart_and_names_may_hold_commas(tmp_path):
+    same = [finished(tmp_path / place / "a, b", 0.2) for place in ("x", "y")]
+    other = finished(tmp_path / 'c "d"', 0.2)
+    assert main(["plate", *map(str, [*same, other]), "--out", str(tmp_path / "out"), "--quiet"]) == 0
+    rows = list(csv.DictReader((tmp_path / "out" / "plate.csv").read_text().splitlines()))
+    assert {row["design"] for row in rows} == {*map(str, same), 'c "d"'}
+    assert all(row["file"].endswith(f"{row['plate']}.gds") for row in rows)
+
+
+def test_a_folder_without_gdsii_is_refused(tmp_path, capsys):
+    folder = finished(tmp_path / "one", 0.2)
+    (folder / "mask" / "top.gds").unlink()
+    write_manifest(folder, {"versions": versions(), "stages": [], "inputs": [], "findings": [], "exit_code": 0})
+    assert main(["plate", str(folder), "--out", str(tmp_path / "out")]) == 2
+    assert "has no masks as GDSII; let its output.masks name gds" in capsys.readouterr().err
+
+
 def test_a_changed_mask_is_refused(tmp_path, capsys):
     folder = finished(tmp_path / "one", 0.2)
     path = folder / "mask" / "top.gds"
