@@ -13,7 +13,7 @@ import numpy as np
 from lce_solver.errors import InputError
 from lce_workbench.core.domains import PLATES
 from lce_workbench.core.mask import LAYERS
-from lce_workbench.export.together import Piece, Placed, arranged, polygons, write
+from lce_workbench.export.together import STREET, Piece, Placed, arranged, polygons, write
 from lce_workbench.outputs import MANIFEST, read_manifest, require_unchanged, staged, write_manifest
 from lce_workbench.pipeline import versions
 
@@ -82,7 +82,7 @@ def table(placed: Sequence[Placed]) -> str:
 
 
 def _picture(placed: Sequence[Placed], side: float, path: Path) -> None:
-    """The map as a picture, seen on the resist side."""
+    """The map as a picture, seen on the resist side; dashed: where the saw runs."""
     from matplotlib.figure import Figure  # noqa: PLC0415 (slow, and only here)
     from matplotlib.patches import Rectangle  # noqa: PLC0415
 
@@ -95,6 +95,8 @@ def _picture(placed: Sequence[Placed], side: float, path: Path) -> None:
         axes.add_patch(
             Rectangle((item.x - width / 2, item.y - height / 2), width, height, fc=colour, ec="k", alpha=0.3)
         )
+        whole = item.x - (width + STREET) / 2, item.y - (height + STREET) / 2
+        axes.add_patch(Rectangle(whole, width + STREET, height + STREET, fill=False, ls="--", lw=0.6))
         said = "mirrored" if item.piece.plate == "top" else "not mirrored"
         axes.text(
             item.x,

@@ -5,11 +5,12 @@ import pytest
 from sheets import both_masks, design
 
 from lce_solver.types import Severity
+from lce_workbench.core.channel_checks import CHANNEL_CHECKS
 from lce_workbench.core.channels import ChannelField
 from lce_workbench.core.domains import partition
 from lce_workbench.core.job import Job
 from lce_workbench.core.mask import flipped
-from lce_workbench.core.mask_checks import CHANNEL_CHECKS, check
+from lce_workbench.core.mask_checks import check
 
 DOMAINS = partition(design(3, 4, width=1.0, height=1.1))
 JOB = Job()
