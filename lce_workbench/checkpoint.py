@@ -7,7 +7,6 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from lce_solver.shell import Film, Heated
 from lce_solver.types import HeatingStep, Status
 from lce_workbench import __version__
 from lce_workbench.core.job import PredictionSpec
-from lce_workbench.outputs import told
+from lce_workbench.outputs import UNREADABLE, told
 
 
 def place(out: Path) -> Path:
@@ -65,5 +64,5 @@ def _read(path: Path, name: str) -> Heated | None:
             steps = zip(data["steps"].tolist(), data["statuses"].tolist(), strict=True)
             history = tuple(HeatingStep(*row[:3], int(row[3]), Status[status], row[4]) for row, status in steps)
             return Heated(history, tuple(data["frames"]))
-    except (OSError, ValueError, KeyError, BadZipFile):
+    except UNREADABLE:
         return None

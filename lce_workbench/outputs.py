@@ -16,6 +16,7 @@ from dataclasses import asdict, fields
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -306,13 +307,16 @@ def read_design(path: Path) -> Design:
 
 Made = TypeVar("Made")
 
+UNREADABLE = (OSError, ValueError, KeyError, TypeError, EOFError, BadZipFile)
+"""What `numpy.load` and the lookup in its arrays raise on damaged files and on files of another kind."""
+
 
 def read_arrays(path: Path, make: Callable[[Mapping[str, Any]], Made]) -> Made:
     """What ``make`` makes of the arrays of a `design.npz`; errors as for `read_design`."""
     try:
-        with np.load(path, allow_pickle=False) as data:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as data:
             return make({name: data[name] for name in data.files})
-    except (OSError, ValueError, KeyError) as fault:
+    except UNREADABLE as fault:
         msg = f"{path} is not a readable design, or one of another version ({fault}); run `./lce design` again"
         raise InputError(msg) from None
 
@@ -327,7 +331,7 @@ def _design(data: Mapping[str, Any]) -> Design:
         flipped=_ints(data["flipped"]),
         crossings=_ints(data["crossings"]),
     )
-    return Design(
+    plan = Design(
         surface=Surface(data["vertices"], data["faces"]),
         uv=data["uv"],
         theta=data["theta"],
@@ -339,6 +343,23 @@ def _design(data: Mapping[str, Any]) -> Design:
         bending_left=float(data["bending_left"]),
         starts=tuple(_start(row) for row in zip(*(data.get(f"start_{f.name}", ()) for f in STARTS), strict=True)),
     )
+    _require_sound(plan)
+    return plan
+
+
+def _require_sound(plan: Design) -> None:
+    """Refuse numbers that no design of ours has, with a ValueError."""
+    faces = plan.surface.faces
+    if len(faces) == 0 or faces.min() < 0 or faces.max() >= len(plan.uv):
+        msg = "its triangles name vertices that it does not have"
+        raise ValueError(msg)
+    for name in ("uv", "theta", "dtheta", "stretch", "thickness"):
+        if not np.isfinite(getattr(plan, name)).all():
+            msg = f"its {name} is not finite"
+            raise ValueError(msg)
+    if not np.isfinite(plan.surface.vertices).all():
+        msg = "its vertices are not finite"
+        raise ValueError(msg)
 
 
 def _start(row: Sequence[Any]) -> Start:

@@ -51,6 +51,7 @@ def build(
     former: dict[str, Any] = {} if anew else read_manifest(out)
     if not anew:
         require_unchanged(out, "design.npz")
+        read_design(out / "design.npz")  # its faults are told here, with the name that the user knows
     gone = {*names, "review"}  # a review of other files would not be true any more
     records = [r for r in former.get("findings", ()) if r["stage"] not in gone]
     stages = [s for s in former.get("stages", ()) if s not in gone]

@@ -169,7 +169,8 @@ def factorise(ordering: Plan, blocks: Floats, shift: Floats) -> Callable[[Floats
         matrix[range(k), range(k)] += shifts[d * front.start : d * front.stop]
         corner, info = dpotrf(matrix[:k, :k], lower=1, clean=0)
         if info:
-            msg = f"the stiffness is not positive definite at vertex {ordering.order[front.start + (info - 1) // d]}"
+            at = ordering.order[front.start + (info - 1) // d]
+            msg = f"the stiffness is not positive definite at vertex {at}: take a thicker film or smaller domains"
             raise SolverError(msg)
         side, rest = matrix[k:, :k], matrix[k:, k:]
         if len(front.border):  # BLAS takes no empty matrices

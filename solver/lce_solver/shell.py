@@ -54,8 +54,11 @@ class Film:
     """Weight and support, or none: then the film floats freely."""
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.thickness) and self.thickness > 0):
-            msg = f"the film's thickness is {self.thickness:g} mm; give a positive length, for example 0.1"
+        if not 0 < self.thickness < self.sheet.size:
+            msg = (
+                f"the film's thickness is {self.thickness:g} mm; "
+                f"give a positive length below the sheet's size ({self.sheet.size:.3g} mm), for example 0.1"
+            )
             raise InputError(msg)
         for name in ("theta", "dtheta"):
             object.__setattr__(self, name, owned(getattr(self, name), name, np.float64, len(self.sheet.faces)))

@@ -60,11 +60,21 @@ def test_a_heating_of_another_sheet_is_not_gone_on_with(designed):
     assert not place(designed).exists()
 
 
-def test_a_damaged_file_is_no_harm(designed):
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda whole: whole[: len(whole) // 2],
+        lambda whole: whole.replace(whole[len(whole) // 2 :][:64], bytes(64)),
+        lambda _: b"",
+        lambda _: b"\x93NUMPY not an archive",
+    ],
+    ids=["cut short", "overwritten", "empty", "another kind"],
+)
+def test_a_damaged_file_is_no_harm(designed, damage):
     interrupted(designed)
-    whole = place(designed).read_bytes()
-    place(designed).write_bytes(whole[: len(whole) // 2])
+    place(designed).write_bytes(damage(place(designed).read_bytes()))
     assert heated(designed)[0] == 0.0
+    assert not place(designed).exists()
 
 
 def read_glb(path: Path):

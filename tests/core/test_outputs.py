@@ -4,6 +4,7 @@ import os
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from sheets import design
 
@@ -18,6 +19,37 @@ from lce_workbench.outputs import (
     write_design,
     write_manifest,
 )
+
+
+def _poisoned(array):
+    array = array.astype(float)
+    array.flat[3] = np.nan
+    return array
+
+
+FOREIGN = {
+    "cut short": lambda path: path.write_bytes(path.read_bytes()[:3000]),
+    "empty": lambda path: path.write_bytes(b""),
+    "another kind": lambda path: path.write_bytes(b"\x93NUMPY not an archive"),
+    "theta is missing": lambda path: _changed(path, theta=None),
+    "theta is not finite": lambda path: _changed(path, theta=_poisoned),
+    "vertices are not finite": lambda path: _changed(path, vertices=_poisoned),
+    "triangles name vertices": lambda path: _changed(path, faces=lambda a: a + 1000),
+    "no triangles": lambda path: _changed(
+        path, **dict.fromkeys(("faces", "theta", "dtheta", "stretch"), lambda a: a[:0])
+    ),
+}
+
+
+def _changed(path, **changes):
+    with np.load(path) as data:
+        arrays = dict(data)
+    for name, change in changes.items():
+        former = arrays.pop(name)
+        if change:
+            arrays[name] = change(former)
+    np.savez(path, **arrays)
+
 
 OURS = {"versions": {"lce-molds": "0"}, "findings": []}
 
@@ -201,3 +233,12 @@ def test_the_design_comes_back_with_the_starts_that_competed(tmp_path):
     for competed in (starts, ()):
         write_design(replace(design(), starts=competed), tmp_path / "design.npz")
         assert read_design(tmp_path / "design.npz").starts == competed
+
+
+@pytest.mark.parametrize("fault", FOREIGN)
+def test_what_is_no_design_is_told(tmp_path, fault):
+    path = tmp_path / "design.npz"
+    write_design(design(4, 4), path)
+    FOREIGN[fault](path)
+    with pytest.raises(InputError, match="is not a readable design"):
+        read_design(path)

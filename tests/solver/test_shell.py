@@ -331,8 +331,9 @@ def test_mistakes_are_told():
         shell(uv, faces[:, ::-1])
     with pytest.raises(InputError, match="too few"):
         shell(np.array([(0, 0), (1, 0), (1, 1), (0, 1.0)]), np.array([(0, 1, 2), (0, 2, 3)]))
-    with pytest.raises(InputError, match="thickness"):
-        film(uv, faces, np.zeros(len(faces)), np.zeros(len(faces)), material=LCE, thickness=0.0)
+    for thickness in (0.0, -0.1, np.nan, 1e6):
+        with pytest.raises(InputError, match="thickness"):
+            film(uv, faces, np.zeros(len(faces)), np.zeros(len(faces)), material=LCE, thickness=thickness)
 
 
 def test_ordering_is_shared_by_patterns_on_one_mesh():
