@@ -9,6 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from lce_solver.shell import Film, film_of
+from lce_solver.twist import edge_factor
 from lce_solver.types import Design, Floats, line_angle
 from lce_workbench.core.domains import Domains
 from lce_workbench.core.job import PredictionSpec
@@ -48,8 +49,10 @@ def _rough(at: Bench, _: np.random.Generator, imperfection: float) -> Film:  # n
     return at.film
 
 
-def _twisted(at: Bench, _: np.random.Generator, gain: float) -> Film:
-    return replace(at.film, dtheta=gain * at.film.dtheta)
+def _twisted(at: Bench, _: np.random.Generator, gain: float, overdrive: float) -> Film:
+    """Twist times ``gain``; with ``overdrive`` 1 also times the paper's factor near the edge."""
+    factor = edge_factor(at.plan.uv, at.plan.surface.faces) if overdrive else 1.0
+    return replace(at.film, dtheta=gain * factor * at.film.dtheta)
 
 
 def _at_lambda(at: Bench, _: np.random.Generator, percent: float) -> Film:
@@ -137,9 +140,13 @@ STUDIES: dict[str, Study] = {
         _rough,
     ),
     "twist": Study(
-        "How strongly does the twist bias the sheet to the right side: none, half, as designed, double, wrong sign?",
-        "twist [of the design's]",
-        _each("gain", 0.0, 0.5, 1.0, 2.0, -1.0),
+        "How strongly does the twist bias the sheet to the right side: none, half, as designed, double, wrong sign, "
+        "and as designed but overdriven at the edge?",
+        "twist [of the design's], edge overdriven (0, 1)",
+        tuple(
+            {"gain": gain, "overdrive": edge}
+            for gain, edge in ((0.0, 0.0), (0.5, 0.0), (1.0, 0.0), (2.0, 0.0), (-1.0, 0.0), (1.0, 1.0))
+        ),
         _twisted,
     ),
     "misalignment": Study(

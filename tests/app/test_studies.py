@@ -25,17 +25,17 @@ def designed(tmp_path_factory):
 
 
 def test_a_study_adds_its_files_and_later_stages_keep_them(designed, capsys):
-    assert main(["study", "twist", str(designed), "--samples", "10"]) == 0
+    assert main(["study", "twist", str(designed), "--samples", "12"]) == 0
     told = capsys.readouterr().err
-    assert "10 samples of" in told.splitlines()[0]
+    assert "12 samples of" in told.splitlines()[0]
     assert "s of one processor" in told.splitlines()[0]
-    assert "2 of 2 at 1" in told
+    assert "2 of 2 at 1, 0" in told
     files = {f"studies/twist.{kind}" for kind in ("csv", "json", "png")}
     manifest = json.loads((designed / "manifest.json").read_text())
     assert files <= {entry["path"] for entry in manifest["files"]}
     assert [record["stage"] for record in manifest["findings"]].count("study twist") == 1
     before = {name: digests(designed)[name] for name in files}
-    assert main(["study", "twist", str(designed), "--samples", "10", "--quiet"]) == 0
+    assert main(["study", "twist", str(designed), "--samples", "12", "--quiet"]) == 0
     assert main(["mask", str(designed), "--quiet"]) == 0
     assert {name: digests(designed)[name] for name in files} == before
     manifest = json.loads((designed / "manifest.json").read_text())
@@ -43,21 +43,23 @@ def test_a_study_adds_its_files_and_later_stages_keep_them(designed, capsys):
 
 
 def test_the_review_tells_the_studies_of_its_folder(designed):
-    assert main(["study", "twist", str(designed), "--samples", "5", "--quiet"]) == 0
+    assert main(["study", "twist", str(designed), "--samples", "6", "--quiet"]) == 0
     assert main(["review", str(designed), "--quiet"]) in {0, 1}
     text = (designed / "report.json").read_text()
-    assert "Study twist, twist [of the design's]: the simulated sheet reaches the target" in text
+    assert (
+        "Study twist, twist [of the design's], edge overdriven (0, 1): the simulated sheet reaches the target" in text
+    )
     assert "No study of tolerances" not in text
 
 
 def test_the_table_counts_what_the_samples_say(designed):
-    assert main(["study", "twist", str(designed), "--samples", "10", "--quiet"]) == 0
+    assert main(["study", "twist", str(designed), "--samples", "12", "--quiet"]) == 0
     with (designed / "studies" / "twist.csv").open() as file:
         rows = list(csv.DictReader(file))
     table = json.loads((designed / "studies" / "twist.json").read_text())["table"]
-    assert [row["gain"] for row in table] == [value["gain"] for value in STUDIES["twist"].values]
+    assert [{key: row[key] for key in ("gain", "overdrive")} for row in table] == list(STUDIES["twist"].values)
     for entry in table:
-        own = [row for row in rows if float(row["gain"]) == entry["gain"]]
+        own = [row for row in rows if all(float(row[key]) == entry[key] for key in ("gain", "overdrive"))]
         assert {row["seed"] for row in own} == {"1", "2"}
         assert entry["reached"] == sum(row["reached"] == "True" for row in own) / len(own)
         assert entry["rms_pct_max"] == max(float(row["rms_pct"]) for row in own)
@@ -70,7 +72,7 @@ def test_the_table_counts_what_the_samples_say(designed):
     ("words", "said"),
     [
         (["study", "twists", "."], "'twists' is unknown; known are robustness"),
-        (["study", "twist", "DIR", "--samples", "3"], "--samples 3 is fewer than the 5 values of the study twist"),
+        (["study", "twist", "DIR", "--samples", "3"], "--samples 3 is fewer than the 6 values of the study twist"),
         (["study", "twist", "/nowhere"], "is not a readable design"),
     ],
 )

@@ -123,4 +123,11 @@ def test_material_and_thickness(plain):
     assert film(plain, "lambda", percent=20).material.lambda_ == pytest.approx(0.52)
     assert film(plain, "nu", change=0.1).material.nu == pytest.approx(0.6)
     assert film(plain, "gap", percent=-50).thickness == pytest.approx(0.05)
-    assert np.array_equal(film(plain, "twist", gain=-1.0).dtheta, -plain.film.dtheta)
+
+
+def test_twist_is_multiplied_everywhere_and_near_the_edge(plain):
+    assert np.array_equal(film(plain, "twist", gain=-1.0, overdrive=0.0).dtheta, -plain.film.dtheta)
+    factor = film(plain, "twist", gain=1.0, overdrive=1.0).dtheta / plain.film.dtheta
+    inner = np.abs(plain.plan.uv[plain.plan.surface.faces].mean(axis=1))
+    distance = np.min(np.ptp(plain.plan.uv, axis=0) / 2 - inner, axis=1)  # of a rectangle about the origin
+    assert np.abs(factor - (1 + 5 * np.exp(-distance / 2))).max() < 1e-9
