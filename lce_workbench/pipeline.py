@@ -18,7 +18,15 @@ from lce_workbench.core.mask import refuse_unwritable
 from lce_workbench.export import EXPORTERS
 from lce_workbench.export.outlines import OUTLINES
 from lce_workbench.freecad_child import freecad
-from lce_workbench.outputs import as_record, has_error, read_manifest, require_unchanged, staged, write_manifest
+from lce_workbench.outputs import (
+    as_record,
+    has_error,
+    read_design,
+    read_manifest,
+    require_unchanged,
+    staged,
+    write_manifest,
+)
 from lce_workbench.stages import OUTPUTS, STAGES, Run, inputs
 
 
