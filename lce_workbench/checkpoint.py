@@ -46,11 +46,14 @@ def resumed(path: Path, name: str) -> Iterator[tuple[Heated | None, Callable[[He
     def keep(done: Heated) -> None:
         part = path.with_suffix(".part")
         steps = [(step.lambda_, step.stretching, step.bending, step.iterations, step.loading) for step in done.history]
-        with told(path):
-            with part.open("wb") as file:
-                statuses = [step.status.name for step in done.history]
-                np.savez(file, key=name, frames=np.array(done.frames), steps=np.array(steps), statuses=statuses)
-            part.replace(path)  # whole or not at all
+        statuses = [step.status.name for step in done.history]
+        try:
+            with told(path):
+                with part.open("wb") as file:
+                    np.savez(file, key=name, frames=np.array(done.frames), steps=np.array(steps), statuses=statuses)
+                part.replace(path)  # whole or not at all
+        finally:
+            part.unlink(missing_ok=True)
 
     yield _read(path, name), keep
     path.unlink(missing_ok=True)

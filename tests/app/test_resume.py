@@ -9,6 +9,7 @@ import pytest
 import small
 from small import digests
 
+from lce_solver.errors import EnvironmentFault
 from lce_workbench.checkpoint import place
 from lce_workbench.cli import Bar
 from lce_workbench.core import jobfile
@@ -75,6 +76,15 @@ def test_a_damaged_file_is_no_harm(designed, damage):
     place(designed).write_bytes(damage(place(designed).read_bytes()))
     assert heated(designed)[0] == 0.0
     assert not place(designed).exists()
+
+
+def test_a_full_disk_is_told_and_leaves_the_folder_as_it_was(designed):
+    """/dev/full gives the kernel's own answer to a write on a full disk."""
+    before = digests(designed.parent)
+    place(designed).with_suffix(".part").symlink_to("/dev/full")
+    with pytest.raises(EnvironmentFault, match="the disk is full"):
+        heated(designed)
+    assert digests(designed.parent) == before
 
 
 def read_glb(path: Path):
