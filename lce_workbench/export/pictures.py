@@ -152,4 +152,4 @@ def _figure(view: Rect, beside: float = 0.0) -> tuple[Figure, Any]:
 
 def _save(figure: Figure, path: Path) -> None:
     """Without a date or version, so that the bytes depend on the picture alone."""
-    figure.savefig(path, dpi=240, metadata={"Software": None})
+    figure.savefig(path, dpi=160, metadata={"Software": None})

@@ -62,8 +62,12 @@ def test_hatch_and_gdsii(benchmark, sheet, tmp_path):
 def test_format(benchmark, sheet, tmp_path, name):
     domains, frame = sheet
     field = ChannelField(domains, "top", JOB.channels)
-    benchmark.pedantic(EXPORTERS[name], (compose(frame, field, JOB), tmp_path / f"top.{name}"), rounds=1)
+    made = compose(frame, field, JOB), tmp_path / f"top.{name}"
+    seconds = min(processor_seconds(EXPORTERS[name], *made)[0] for _ in range(2))
+    benchmark.pedantic(EXPORTERS[name], made, rounds=1)
     rate(benchmark, int(field.counts.sum()))
+    benchmark.extra_info["seconds"] = round(seconds, 2)
+    assert seconds < {"dxf": 5, "r12.dxf": 5, "oas": 3}.get(name, 2)
     benchmark.extra_info["megabytes"] = round((tmp_path / f"top.{name}").stat().st_size / 1e6, 1)
 
 
@@ -174,10 +178,12 @@ def alone(folder, domains, *, freecad=False):
 
 @pytest.mark.parametrize("freecad", [False, True])
 def test_memory(benchmark, tmp_path, freecad):
-    """B20 in a process of its own, and under Debian's NumPy inside FreeCAD: under 1 s and 200 MB."""
-    found = benchmark.pedantic(alone, (tmp_path, "b20()"), {"freecad": freecad}, rounds=1)
-    benchmark.extra_info["megabytes"], benchmark.extra_info["seconds"] = (round(x, 2) for x in found[:2])
-    assert found[0] < 200
+    """B20 in a process of its own, and under Debian's NumPy inside FreeCAD: under 1 s of the processor and 200 MB."""
+    benchmark.pedantic(alone, (tmp_path, "b20()"), {"freecad": freecad}, rounds=1)
+    megabytes, seconds = np.min([alone(tmp_path, "b20()", freecad=freecad)[:2] for _ in range(3)], axis=0)
+    benchmark.extra_info |= {"megabytes": round(megabytes, 2), "seconds": round(seconds, 2)}
+    assert megabytes < 200
+    assert seconds < 1
 
 
 def test_wafer(benchmark, tmp_path):
