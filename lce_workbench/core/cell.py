@@ -15,7 +15,6 @@ Nothing here is mirrored: only the master of the top plate is, when its mask is 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -31,7 +30,7 @@ from lce_workbench.core.marks import fingerprint
 from lce_workbench.core.merge import merged
 from lce_workbench.core.prism import Colour, Prism
 from lce_workbench.core.units import UM
-from lce_workbench.core.workshop import alignment_frame, beads, carrier, engraved, glass_levels, inset
+from lce_workbench.core.workshop import alignment_frame, beads, carrier, engraved, glass_levels, inset, release
 
 MAX_SOLIDS = 10_000
 """Channel solids of both plates; about 30 domains."""
@@ -193,8 +192,9 @@ def _require_budget(solids: int) -> None:
     """Refuse more than `MAX_SOLIDS` channels, with what they would cost."""
     if solids > MAX_SOLIDS:
         msg = (
-            f"output.step_domains asks for {solids} channel solids, about {solids * SECONDS:.0f} s and "
-            f"{solids * MEGABYTES:.0f} MB of STEP; the limit is {MAX_SOLIDS}, so choose fewer domains"
+            f"output.step_domains and step_window_um ask for {solids} channel solids, "
+            f"about {solids * SECONDS:.0f} s and {solids * MEGABYTES:.0f} MB of STEP; the limit is {MAX_SOLIDS}, "
+            'so choose fewer domains, or all of them, which are written otherwise, with output.step = "all"'
         )
         raise InputError(msg)
 
@@ -209,7 +209,7 @@ def _plate(frame: Frame, job: Job, plate: Plate, recesses: Sequence[Floats], cod
     """Land, epoxy and glass, from the film outwards; the layers of the glass bear one name."""
     group, outline = f"{plate}_plate", carrier(frame, job, plate)
     faces = np.cumsum([job.sheet.thickness / 2, job.channels.depth, job.plates.epoxy_um * UM, job.plates.glass_mm])
-    narrow = inset(outline, job.plates.epoxy_um * UM * math.tan(math.radians(job.plates.release_deg)))
+    narrow = inset(outline, release(frame, job))
     letters, glass_mm = engraved(frame, job, plate, code), job.plates.glass_mm
 
     def layer(kind: str, near: float, far: float, rings: tuple[Floats, Floats], holes: Sequence[Floats]) -> Prism:

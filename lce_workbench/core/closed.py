@@ -35,10 +35,9 @@ def closed(design: Design, domains: Domains, job: Job) -> Cell:
 
 def _shown(domains: Domains, job: Job) -> Ints:
     """The domains that can become solids: those the job chooses, or the most central ones."""
-    chosen = np.unique(np.array(wanted(domains, job.output), dtype=np.int64))
-    chosen = chosen[(chosen >= 0) & (chosen < len(domains))]  # `assemble` refuses the others
-    if len(chosen):
-        return chosen
+    chosen = {k for k in wanted(domains, job.output) if 0 <= k < len(domains)}  # `assemble` refuses the others
+    if chosen:
+        return np.array(sorted(chosen))
     far = np.linalg.norm(domains.centroid, axis=1)
     return np.sort(np.argsort(far, kind="stable")[:CANDIDATES])
 

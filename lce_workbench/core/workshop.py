@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 
 import numpy as np
@@ -59,6 +60,26 @@ def inset(ring: Floats, distance: float) -> Floats:
     before = np.roll(normal, 1, axis=0)
     share = 1 + np.sum(normal * before, axis=1)
     return np.asarray(ring - distance * (normal + before) / share[:, None])
+
+
+def release(frame: Frame, job: Job) -> float:
+    """How far the patterned face stays back behind the edge of the glass, so that the plate leaves its form [mm].
+
+    Raises
+    ------
+    InputError
+        The taper would reach the marks.
+    """
+    back = job.plates.epoxy_um * UM * math.tan(math.radians(job.plates.release_deg))
+    half = np.array(frame.plate.size) / 2
+    room = float((half - np.abs(frame.marks).max(axis=0)).min()) - MARK_BOX / 2
+    if back > room:
+        msg = (
+            f"plates.release_deg = {job.plates.release_deg:g} narrows the patterned face by {back:.3g} mm, into the "
+            f"marks; {room:.3g} mm are free, so make the taper steeper, the epoxy thinner, or the plate larger"
+        )
+        raise InputError(msg)
+    return back
 
 
 def glass_levels(job: Job) -> list[tuple[float, float, float, float, bool]]:

@@ -212,7 +212,7 @@ def test_too_many_solids_are_refused_with_an_estimate():
     channels = hatched(sheet, job())
     total = sum(len(channels[plate]) for plate in PLATES)
     assert total > MAX_SOLIDS
-    sentence = rf"asks for {total} channel solids, about {total * 4e-3:.0f} s and {total * 8e-3:.0f} MB of STEP"
+    sentence = rf"ask for {total} channel solids, about {total * 4e-3:.0f} s and {total * 8e-3:.0f} MB of STEP"
     with pytest.raises(InputError, match=sentence):
         choose(sheet, channels, range(len(sheet)))
 

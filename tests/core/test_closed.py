@@ -30,6 +30,7 @@ def test_it_is_the_cell_of_the_whole_sheet(chosen):
             assert all(np.array_equal(a, b) for a, b in zip(one.rings, other.rings, strict=True))
 
 
-def test_a_domain_that_does_not_exist_is_refused():
-    with pytest.raises(InputError, match=r"domain 96 does not exist; the sheet has 0 to 95"):
-        closed(design(), partition(design()), replace(Job(), output=Output(step_domains=(3, 96))))
+@pytest.mark.parametrize("number", [96, -1, 10**30])
+def test_a_domain_that_does_not_exist_is_refused(number):
+    with pytest.raises(InputError, match=rf"domain {number} does not exist; the sheet has 0 to 95"):
+        closed(design(), partition(design()), replace(Job(), output=Output(step_domains=(3, number))))

@@ -149,6 +149,7 @@ def test_an_inset_triangle_keeps_its_incircle_s_centre():
         (Plates(chamfer_mm=1.0), None, r"plates.chamfer_mm is not less than the glass, plates.glass_mm = 1"),
         (Plates(engraving_um=1000.0), None, r"plates.engraving_um is not less than the glass"),
         (Plates(engraving_um=50.0, width_mm=15.0), Spacer(glue_mm=0.1), r"make spacer.glue_mm larger"),
+        (Plates(release_deg=45.0, epoxy_um=2000.0, width_mm=19.0), None, r"patterned face by 2 mm, into the marks; \d"),
         (Plates(carrier="25x25", width_mm=30.0), None, r"plates.carrier = 25x25 fixes the glass; leave out"),
     ],
 )
