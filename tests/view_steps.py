@@ -34,6 +34,7 @@ def opened(folder, *, plates=True):
         heating.Proxy.remember(heating)
         session._recompute(cell)
     doc.clearUndos()
+    assert all(obj.isValid() for obj in doc.Objects), [(o.Name, o.getStatusString()) for o in doc.Objects]
     return cell
 
 
@@ -353,8 +354,58 @@ def first_draw(folder, plate="bottom"):
 
 
 def drawn(view):
-    """Let the view draw what changed, and wait for the pixels."""
+    """Let the view draw what changed: it does so from a timer of its own."""
     import FreeCADGui
 
     view.redraw()
-    FreeCADGui.updateGui()
+    for _ in range(3):
+        FreeCADGui.updateGui()
+        time.sleep(0.02)
+
+
+def shown(folder, pictures):
+    """A picture of each state of the view, for the documentation; ``folder`` is an output folder."""
+    import FreeCADGui
+    from gui_steps import expand, picture
+
+    from lce_workbench.gui.qt import QtCore, QtWidgets
+
+    window = FreeCADGui.getMainWindow()
+    window.showMaximized()
+    activate()
+    cell = opened(folder)
+    from lce_workbench.gui import scene
+
+    for dock in window.findChildren(QtWidgets.QDockWidget):
+        if dock.objectName() in {"Report view", "Python console"}:
+            dock.hide()
+    expand(window)
+    view = scene.of(cell).view
+    view.viewIsometric()
+    view.fitAll()
+    for number, name in enumerate(PICTURES.values(), start=1):
+        run(name)
+        picture(pictures, f"view_{number}_{name[4:]}")
+    run("ShowCell")
+    run("Explode")
+    picture(pictures, "view_6_exploded")
+    run("Explode")
+    run("Section")
+    picture(pictures, "view_7_section")
+    run("Section")
+    run("ShowDirectors")
+    run("Domains")
+    dock = window.findChild(QtWidgets.QDockWidget, "lce_domains")
+    window.resizeDocks([dock], [420], QtCore.Qt.Horizontal)
+    pump(0.3)
+    middle = scene.of(cell).shown().domains.centroid - [1.0, 2.0]
+    near = np.argsort(np.linalg.norm(middle, axis=1))[:4]
+    scene.mark(cell, near.tolist(), go=True)
+    picture(pictures, "view_8_table")
+    dock.button.click()
+    scene.mark(cell, near.tolist(), go=True)
+    scene.mark(cell, ())
+    for obj in cell.OutListRecursive:
+        if hasattr(obj, "Prisms") and not obj.Prisms.startswith("channels_top"):
+            obj.ViewObject.Visibility = False
+    picture(pictures, "view_9_solids")
