@@ -112,7 +112,7 @@ def fingerprint(doc):
     for obj in doc.Objects:
         for name in obj.PropertiesList:
             value = getattr(obj, name)
-            if hasattr(value, "Faces"):
+            if hasattr(value, "Faces") and not value.isNull():
                 value = [value.Volume, value.BoundBox.XMin, value.BoundBox.ZMax, len(value.Faces)]
             elif name == "File":
                 value = value and hashlib.sha256(Path(value).read_bytes()).hexdigest()

@@ -365,11 +365,16 @@ def drawn(view):
 
 def shown(folder, pictures):
     """A picture of each state of the view, for the documentation; ``folder`` is an output folder."""
+    import FreeCAD
     import FreeCADGui
     from gui_steps import expand, picture
 
     from lce_workbench.gui.qt import QtCore, QtWidgets
 
+    look = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/View")
+    look.SetBool("Gradient", False)
+    look.SetBool("Simple", True)
+    look.SetUnsigned("BackgroundColor", 0xE3E8EEFF)
     window = FreeCADGui.getMainWindow()
     window.showMaximized()
     activate()
@@ -383,7 +388,7 @@ def shown(folder, pictures):
     view = scene.of(cell).view
     view.viewIsometric()
     view.fitAll()
-    for number, name in enumerate(PICTURES.values(), start=1):
+    for number, name in enumerate(list(PICTURES.values())[:-1], start=1):  # both plates look alike
         run(name)
         picture(pictures, f"view_{number}_{name[4:]}")
     run("ShowCell")
@@ -403,9 +408,9 @@ def shown(folder, pictures):
     scene.mark(cell, near.tolist(), go=True)
     picture(pictures, "view_8_table")
     dock.button.click()
-    scene.mark(cell, near.tolist(), go=True)
-    scene.mark(cell, ())
     for obj in cell.OutListRecursive:
-        if hasattr(obj, "Prisms") and not obj.Prisms.startswith("channels_top"):
+        if hasattr(obj, "Prisms") and not obj.Prisms.startswith("channels_"):
             obj.ViewObject.Visibility = False
+    view.viewTop()
+    view.fitAll()
     picture(pictures, "view_9_solids")

@@ -25,6 +25,9 @@ BESIDE = 0.12
 STICK = 0.95
 """Half a director's line over the distance from its triangle's middle to the nearest side: it stays inside."""
 
+TINT = 0.6
+"""How much of its colour the largest twist gives to its triangle: so it is seen from afar, where lines are short."""
+
 TILES = 12
 """Channels are drawn in so many tiles across the sheet, so that those out of sight cost nothing."""
 
@@ -84,8 +87,9 @@ def directors(shown: Shown) -> Picture:
     twist = np.degrees(design.dtheta)
     most = float(np.abs(twist).max()) or 1.0
     scale = Scale("twist Δθ", "°", -most, most, "signed")
-    skins = flat_skin(design), target_skin(design)
     colours, faces = scale.colours(twist), np.repeat(np.arange(len(twist)), 2)
+    tints = PALE + TINT * (np.abs(twist) / most)[:, None] * (colours - PALE)
+    skins = flat_skin(design, tints), target_skin(design, tints)
     ends = sticks(design)
     lines = [Strokes(skin.lift(ends, faces).astype(np.float32), colours, width=2.0) for skin in skins]
     return Picture("Directors", skins, (*lines, *_rims(skins)), scale, shown.stale)

@@ -52,7 +52,7 @@ def picture(shown: Picture) -> Any:
     """All of a picture but its legend; what is drawn behind the lines is moved back a little."""
     back = coin.SoPolygonOffset()
     above = coin.SoDirectionalLight()
-    above.direction, above.intensity = (0.3, 0.3, -1.0), 0.45
+    above.direction, above.intensity = (0.3, 0.3, -1.0), 0.3
     skins = group(back, above, *(skin(one) for one in shown.skins))
     return group(skins, *(strokes(one) for one in shown.strokes))
 

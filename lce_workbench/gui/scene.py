@@ -38,7 +38,7 @@ MARKED = (0.90, 0.00, 0.45)
 REACH = 1e-3
 """Size of the legend's own world relative to what is shown."""
 
-CLOSE = 8.0
+CLOSE = 6.0
 """Height of the view over the size of the domains that it goes to."""
 
 GAPS = 25.0
@@ -61,6 +61,8 @@ class Scene:
         self.cut_at: float | None = None
         """y of the section [mm]."""
         self.marked: tuple[int, ...] = ()
+        self.domains = self.shown().domains
+        """Those that are marked: with others nothing is."""
         self.document = cell.Document
         self.aside: dict[str, int] = {}
         """Name of an object that a picture puts aside -> what its switch showed."""
@@ -178,10 +180,10 @@ class Scene:
     def take_apart(self, width: float) -> None:
         """Move the bodies along z, as far as parts of plates of this ``width`` [mm] go; 0 puts them together."""
         for body in self.bodies():
-            if body.Name not in self.lifts:
-                self.lifts[body.Name] = coin.SoTranslation()
-                body.ViewObject.RootNode.insertChild(self.lifts[body.Name], 0)
-            self.lifts[body.Name].translation = (0.0, 0.0, apart(body.Prisms, width))
+            lift, root = self.lifts.setdefault(body.Name, coin.SoTranslation()), body.ViewObject.RootNode
+            if root.findChild(lift) < 0:  # a new body, or one that an undo brought back
+                root.insertChild(lift, 0)
+            lift.translation = (0.0, 0.0, apart(body.Prisms, width))
 
     def cut_open(self, y: float) -> None:
         """Hide what is before the plane at ``y`` [mm], and fill the solids that it goes through."""
@@ -203,9 +205,12 @@ class Scene:
     def outline(self) -> None:
         """Draw the marked domains."""
         self.marks.removeAllChildren()
+        domains, former = self.shown().domains, self.domains
+        self.domains = domains
+        if not all(np.array_equal(getattr(domains, n), getattr(former, n)) for n in ("polygons", "vertices")):
+            self.marked = ()
         if not self.marked:
             return
-        domains = self.shown().domains
         lines = []
         for skin in self.skins():
             for domain in self.marked:
@@ -231,18 +236,22 @@ class Scene:
         """Mark the domain that was clicked, while domains are picked; with Ctrl, besides the others or no more."""
         if not self.picking or event["Button"] != "BUTTON1":
             return
-        if event["State"] == "DOWN":
-            self.pressed = event["Position"]
-        elif np.abs(np.subtract(event["Position"], self.pressed)).max() <= STILL:
-            domain = self.pick(event["Position"])
+        place, down, more = event["Position"], event["State"] == "DOWN", event["CtrlDown"]
+        if down:
+            self.pressed = place
+        still = np.abs(np.subtract(place, self.pressed)).max() <= STILL
+        if still and down == more:  # a press with Ctrl turns nothing, and FreeCAD 1.0 keeps its release for itself
+            domain = self.pick(place)
             if domain is not None:
-                mark(self.cell, sorted({*self.marked} ^ {domain}) if event["CtrlDown"] else (domain,))
+                mark(self.cell, sorted({*self.marked} ^ {domain}) if more else (domain,))
 
     def close(self) -> None:
         """Leave the view of a cell that is gone."""
         self.view.removeEventCallback("SoMouseButtonEvent", self.listening)
         for node in (self.front, self.clip, self.back, self.marks):
             self.graph.removeChild(node)
+        for lift in self.lifts.values():
+            lift.translation = (0.0, 0.0, 0.0)
         self.put_aside(False)
 
 
@@ -363,12 +372,11 @@ class Follow:
         for name, scene in list(SCENES.items()):
             if name[0] != doc.Name:
                 continue
-            if doc.getObject(name[1]) is None:
+            if doc.getObject(name[1]) is None or not cells.design_of(scene.cell).File:
                 _forget(name).close()
                 continue
             try:
                 if scene.key != scene.made_for():
-                    scene.marked = ()
                     scene.draw()
             except LceError as fault:
                 FreeCAD.Console.PrintWarning(f"LCE Mold: {fault}\n")

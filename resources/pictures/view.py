@@ -16,7 +16,7 @@ from freecad_call import FreeCAD  # noqa: E402
 from processes import display  # noqa: E402
 
 PICTURES = ROOT / "docs" / "workbench"
-COLOURS = 128
+COLOURS = 96
 
 if __name__ == "__main__":
     with (
@@ -30,5 +30,5 @@ if __name__ == "__main__":
         finally:
             manager.terminate()
     for picture in sorted(PICTURES.glob("view_*.png")):
-        size = ["-colors", str(COLOURS), "-define", "png:compression-level=9"]
+        size = ["+dither", "-colors", str(COLOURS), "-define", "png:compression-level=9"]
         subprocess.run(["convert", picture, *size, picture], check=True)
