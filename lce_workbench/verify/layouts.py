@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from array import array
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -13,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from lce_solver.types import Floats
+from lce_workbench.verify import drawings
 from lce_workbench.verify.finding import Unreadable
 
 LAYERS = {1: "CHANNELS", 2: "MARKS", 3: "LABELS", 4: "TEST", 10: "PLATE", 11: "DOMAINS", 12: "SPACER", 13: "SEAM"}
@@ -96,80 +96,11 @@ def _gdstk(path: Path) -> Layout:
 
 
 def _dxf(path: Path) -> Layout:
-    """DXF of any version: closed polylines by layer, and what else there is."""
-    from ezdxf.lldxf.const import DXFError
-    from ezdxf.lldxf.tagger import ascii_tags_loader
-
-    reading = _Polylines()
-    try:
-        with path.open(encoding="ascii") as file:
-            for code, value in ascii_tags_loader(file):
-                if code in reading.wanted:
-                    reading.take(code, value)
-    except DXFError as fault:
-        raise ValueError(str(fault)) from None
-    return reading.layout(path.name)
-
-
-class _Polylines:
-    """Collects the corners of polylines from a stream of tags."""
-
-    wanted = frozenset((0, 2, 8, 9, 10, 20, 70))
-
-    def __init__(self) -> None:
-        self.kind = self.section = self.variable = ""
-        self.unit = MICRON
-        self.ended = False
-        self.layer: list[str] = []
-        self.count: list[int] = []
-        self.closed: list[bool] = []
-        self.x, self.y = array("d"), array("d")
-        self.others: Counter[str] = Counter()
-
-    def take(self, code: int, value: str) -> None:  # noqa: PLR0912 (a branch a code; called seven million times)
-        if code == 10:
-            if self.kind in CORNERED:
-                self.x.append(float(value))
-                self.count[-1] += 1
-        elif code == 20:
-            if self.kind in CORNERED:
-                self.y.append(float(value))
-        elif code == 0:
-            self.kind = value
-            if value in {"LWPOLYLINE", "POLYLINE"}:
-                self.count.append(0)
-                self.layer.append("")
-                self.closed.append(False)
-            elif value == "EOF":
-                self.ended = True
-            elif self.section in {"ENTITIES", "BLOCKS"} and value not in STRUCTURE:
-                self.others[value] += 1
-        elif code == 8:
-            if self.kind in {"LWPOLYLINE", "POLYLINE"}:
-                self.layer[-1] = value
-        elif code == 70:
-            if self.kind in {"LWPOLYLINE", "POLYLINE"}:
-                self.closed[-1] = bool(int(value) & 1)
-            elif self.variable == "$INSUNITS":
-                self.unit, self.variable = DXF_UNITS.get(value.strip(), np.nan), ""
-        elif code == 9:
-            self.variable = value
-        elif self.kind == "SECTION":
-            self.section, self.kind = value, ""
-
-    def layout(self, name: str) -> Layout:
-        if not self.ended or len(self.x) != len(self.y):
-            msg = "it ends before its end"
-            raise ValueError(msg)
-        self.others["open polylines"] += len(self.closed) - sum(self.closed)
-        points = np.stack([np.array(self.x), np.array(self.y)], axis=1)
-        layers = _by_layer(points * self.unit, np.array(self.count), np.array(self.layer))
-        return Layout(name, layers, None, (1e-9, self.unit * 1e-9), _told(self.others))
-
-
-CORNERED = frozenset(("LWPOLYLINE", "VERTEX"))
-
-STRUCTURE = frozenset(("SECTION", "ENDSEC", "VERTEX", "SEQEND", "BLOCK", "ENDBLK"))
+    """DXF of any version: closed polylines by layer, and what else there is; without a unit it is in um."""
+    drawing = drawings.read(path.read_bytes())
+    unit = MICRON if drawing.unit is None else DXF_UNITS.get(drawing.unit, np.nan)
+    layers = _by_layer(drawing.points * unit, drawing.counts, drawing.layers)
+    return Layout(path.name, layers, None, (1e-9, unit * 1e-9), _told(drawing.others))
 
 
 def _cif(path: Path) -> Layout:

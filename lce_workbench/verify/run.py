@@ -73,11 +73,11 @@ def _drawn(folder: Path, stages: list[str], reference: Reference, progress: Prog
     tasks: dict[str, workers.Task] = {}
     if "mask" in stages:
         tasks |= {f"mask/{p}": (masks.check, (folder, p, reference, counts.get(p))) for p in PLATES}
-    if "cad" in stages:
-        tasks |= {name: (cells.read, (folder, name)) for name in cells.readable(folder, reference)}
     asked = reference.job.output.freecad and document.program() is not None
     if "cad" in stages and asked:
         tasks[document.NAME] = (document.parts, (folder / document.NAME,))
+    if "cad" in stages:  # the quickest come last, so that no processor waits for the other
+        tasks |= {name: (cells.read, (folder, name)) for name in cells.readable(folder, reference)}
     step = count()
     got = workers.run(tasks, lambda name: progress(f"verify: {name}", 0.05 + 0.9 * next(step) / len(tasks)))
     found: Findings = ()

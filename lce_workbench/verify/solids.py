@@ -19,6 +19,10 @@ from lce_workbench.verify.finding import Unreadable
 READABLE = 2000
 """Channels that the kernel reads in some seconds; of larger files the statements are counted."""
 
+REPAIRS = ("FixFreeShellMode", "FixFreeFaceMode", "FixFreeWireMode", "FixSolidMode", "FixShellMode", "FixFaceMode",
+           "FixWireMode", "FixSameParameterMode")  # fmt: skip
+"""What the kernel's reader does to the shapes that it reads unless it is told not to; most of its time goes there."""
+
 
 @dataclass(frozen=True, eq=False)
 class Part:
@@ -71,13 +75,25 @@ def _transferred(path: Path, *, validate: bool) -> list[Part]:
     reader = STEPCAFControl_Reader()
     reader.SetNameMode(True)
     roots = TDF_LabelSequence()
-    if path.is_file() and reader.ReadFile(str(path)) == IFSelect_RetDone and reader.Transfer(document):
+    if path.is_file() and reader.ReadFile(str(path)) == IFSelect_RetDone and _as_written(reader).Transfer(document):
         XCAFDoc_DocumentTool.ShapeTool_s(document.Main()).GetFreeShapes(roots)
     found = [_part(name, shape, validate) for root in roots for name, shape in _leaves(root, None)]
     if not found:
         msg = "OpenCASCADE finds no part in it; write it again"
         raise Unreadable(msg)
     return found
+
+
+def _as_written(reader: Any) -> Any:
+    """A reader that has read a file, and will not repair what is in it."""
+    from OCP.Resource import Resource_DataMapOfAsciiStringAsciiString
+    from OCP.TCollection import TCollection_AsciiString
+
+    modes = Resource_DataMapOfAsciiStringAsciiString()
+    for mode in REPAIRS:
+        modes.Bind(TCollection_AsciiString(f"FixShape.{mode}"), TCollection_AsciiString("0"))
+    reader.SetShapeFixParameters(modes)
+    return reader
 
 
 def _leaves(label: Any, place: Any) -> Iterator[tuple[str, Any]]:
