@@ -12,9 +12,8 @@ from typing import Any
 import numpy as np
 
 from lce_solver.types import Finding, Floats
-from lce_workbench.verify.finding import Findings, error, guarded, measured, same
+from lce_workbench.verify.finding import Findings, Unreadable, error, guarded, measured, reading, same
 from lce_workbench.verify.goals import STACK, Wanted, wanted
-from lce_workbench.verify.layouts import DAMAGES
 from lce_workbench.verify.masks import Plates
 from lce_workbench.verify.reference import PLATES, Plate, Reference
 from lce_workbench.verify.solids import READABLE, Part, counted, parts
@@ -22,6 +21,9 @@ from lce_workbench.verify.workers import value
 
 PARTS = {f"{plate}_plate.step": tuple(f"{plate}_{layer}" for layer in STACK) for plate in PLATES}
 """File -> the parts it has to hold."""
+
+NM = 1e-6
+"""[mm]"""
 
 SAME = 1e-6
 """Relative difference of volumes."""
@@ -46,7 +48,7 @@ def readable(folder: Path, reference: Reference) -> list[str]:
     names = [f"cad/{file}" for file in files(reference)] + [f"cad/combs_{plate}.step" for plate in PLATES]
     for plate in PLATES:
         name = channel_file(plate, reference)
-        with suppress(*DAMAGES):
+        with suppress(Unreadable):
             if counted(folder / name)[0] <= READABLE:
                 names.append(name)
     return names
@@ -137,7 +139,8 @@ def exact_solids(folder: Path, context: Context) -> Iterator[Finding]:
     name = f"cad/channels_{context.plate}_*.step"
     solids, domains = 0, set[str]()
     for path in sorted((folder / "cad").glob(f"channels_{context.plate}_*.step*")):
-        text = gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes()
+        with reading():
+            text = gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes()
         solids += text.count(b"MANIFOLD_SOLID_BREP(")
         domains |= set(counted(path)[1])
     if context.counts is not None:
@@ -187,11 +190,21 @@ def _measure(where: str, part: Part, goal: Wanted) -> Iterator[Finding]:
     z = np.array([part.low[2], part.high[2]])
     text = f"lies between z = {z[0]:.6f} and {z[1]:.6f} mm; from its place it differs by"
     yield measured("verify_height", where, text, float(np.abs(z - goal.z).max()) * 1e6, 1.0, unit="nm")
+    inner = part.levels[(part.levels > z[0] + NM) & (part.levels < z[1] - NM)]
+    shown = ", ".join(f"{level:.6f}" for level in inner) or "none"
+    agree = len(inner) == len(goal.within) and np.allclose(inner, np.sort(goal.within), rtol=0, atol=NM)
+    text = f"corners between its faces, at z = {shown} mm, where the job wants them"
+    yield same("verify_levels", where, text, bool(agree), True)
     if goal.box is not None:
         box = np.concatenate([part.low[:2], part.high[:2]])
         text = "its outline differs from the mask's or the design's by"
         yield measured("verify_extent", where, text, float(np.abs(box - goal.box).max()) * 1e6, 2.0, unit="nm")
-    if goal.volume is not None:
+    if goal.volume is not None and goal.engraving:
+        less = goal.volume - part.volume
+        text = f"letters take {less:.6g} mm3 of it; that is nothing, or more than their room, by"
+        off = 0.0 if 0 < less <= goal.engraving else max(abs(less), SAME)
+        yield measured("verify_engraving", where, text, off, 0.0, unit="mm3")
+    elif goal.volume is not None:
         off = abs(part.volume / goal.volume - 1)
         yield measured("verify_volume", where, "its volume differs by the fraction", off, SAME)
 
@@ -273,7 +286,7 @@ def combs(name: str, result: Any, held: Context) -> Iterator[Finding]:
     for part in value(result):
         where = f"{name}, {part.name}"
         digits = part.name.split("_")[1] if part.name.count("_") == 2 else ""
-        domain = int(digits) if digits.isdigit() else -1
+        domain = int(digits) if digits.isdecimal() else -1
         if part.name != f"comb_{domain:04d}_{held.plate}" or not 0 <= domain < len(area):
             yield error("verify_parts", where, "is no comb of a domain of this plate")
             continue

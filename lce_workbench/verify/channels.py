@@ -185,7 +185,8 @@ def _shapes(name: str, held: Rows, plate: Plate) -> Iterator[Finding]:
     # Rounding turns a channel by up to sqrt(2) nm over its length; weights are the squares of the lengths.
     limits = np.degrees(ROUNDING * held.total(size)[full] / held.total(size**2)[full])
     text = "the channels' direction differs from the design by"
-    yield _worst(name, held, "verify_angle", text, Deviations(np.abs(off[full]), limits, full, "deg"))
+    if len(full):
+        yield _worst(name, held, "verify_angle", text, Deviations(np.abs(off[full]), limits, full, "deg"))
     unit = held.along / size
     ends = np.stack([((p[k] - p[0]) * np.conj(unit)).imag for k in (2, 3)])
     skewed = np.abs(((p[3] - p[0]) * np.conj(unit)).real)

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from lce_solver.types import Finding, Floats
-from lce_workbench.verify.finding import Unreadable, error, measured
+from lce_workbench.verify.finding import Unreadable, error, measured, reading
 from lce_workbench.verify.shapes import areas, boxes
 
 HALF = 750e3
@@ -48,15 +48,12 @@ def places(path: Path) -> dict[str, Floats]:
     Unreadable
         It is missing, or no such form.
     """
-    try:
+    with reading():
         lines = path.read_text(encoding="utf-8-sig").splitlines()
         table = csv.DictReader(line for line in lines if not line.startswith("#"))
         found = {row["mark"]: np.array([float(row["x_mm"]), float(row["y_mm"])]) * 1e6 for row in table}
-    except (OSError, ValueError, KeyError, TypeError, csv.Error) as fault:
-        msg = f"{path.name} is missing or no form for readings ({fault})"
-        raise Unreadable(msg) from None
-    if len(found) != 8:
-        msg = f"{path.name} names {len(found)} clusters instead of 8"
+    if len(found) != 8 or not np.all(np.isfinite(list(found.values()))):
+        msg = f"is no form for readings: it places {len(found)} clusters instead of 8, or one nowhere"
         raise Unreadable(msg)
     return found
 

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +36,9 @@ with open({answer!r}, "w") as file:
 BODIES = {"Film": "sheet"}
 """Bodies whose label is not their part's name: in the document "Sheet" is what holds the sheet's parameters."""
 
+PATIENCE = 600.0
+"""So long FreeCAD may open it [s]."""
+
 LOOSE = 1e-6
 """FreeCAD's boxes are as wide as the kernel's tolerance [mm]."""
 
@@ -56,16 +60,17 @@ def parts(path: Path) -> list[Part]:
         answer = Path(home) / "answer.json"
         code = SCRIPT.format(path=str(path.resolve()), answer=str(answer))
         place = {"LC_ALL": "C.UTF-8", "FREECAD_USER_HOME": home, "PYTHONPATH": ""}
-        subprocess.run(
-            [program() or "freecadcmd", "-c", code], capture_output=True, check=False, env={**os.environ, **place}
-        )
+        call = [program() or "freecadcmd", "-c", code]
+        with suppress(subprocess.TimeoutExpired):  # then there is no answer
+            subprocess.run(call, capture_output=True, check=False, env={**os.environ, **place}, timeout=PATIENCE)
         if not path.is_file() or not answer.is_file():
             msg = "FreeCAD cannot open it; run `./lce cad` again"
             raise Unreadable(msg)
         rows = json.loads(answer.read_text(encoding="utf-8"))
+    named = [(BODIES.get(label, label.lower().replace(" ", "_")), *row) for label, *row in rows]
     return [
-        Part(BODIES.get(label, label.lower().replace(" ", "_")), count, volume, np.array(low), np.array(high), valid)
-        for label, count, volume, low, high, valid in rows
+        Part(name, count, volume, np.array(low), np.array(high), valid, np.empty(0))
+        for name, count, volume, low, high, valid in named
     ]
 
 
@@ -85,7 +90,7 @@ def check(held: list[Part], known: Mapping[str, Part]) -> Iterator[Finding]:
         where = f"{NAME}, {name}"
         off = np.abs(np.concatenate([one.low - other.low, one.high - other.high])).max()
         yield measured("verify_document", where, "its box differs from the STEP file's by", off, LOOSE, unit="mm")
-        off = abs(one.volume / other.volume - 1)
+        off = abs(one.volume - other.volume) / max(abs(other.volume), 1e-12)
         yield measured("verify_document", where, "its volume differs from the STEP file's by the fraction", off, 1e-6)
         if not one.valid:
             yield error("verify_document", where, "is no valid solid")

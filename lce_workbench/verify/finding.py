@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import csv
 import math
-from collections.abc import Callable, Iterable
+import zipfile
+import zlib
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from lce_solver.errors import LceError
@@ -16,7 +20,23 @@ Findings = tuple[Finding, ...]
 
 
 class Unreadable(LceError):
-    """A file cannot be read by its reader; the sentence says which and why."""
+    """A file cannot be read by its reader; the sentence says why."""
+
+
+DAMAGES = (OSError, EOFError, ValueError, RuntimeError, LookupError, TypeError, AttributeError, OverflowError,
+           MemoryError, csv.Error, zlib.error, zipfile.BadZipFile)  # fmt: skip
+"""What readers raise at a damaged file."""
+
+
+@contextmanager
+def reading(*more: type[Exception]) -> Iterator[None]:
+    """Turn what a reader raises at a damaged file, also ``more``, into `Unreadable`. Nothing is checked within."""
+    try:
+        yield
+    except (*DAMAGES, *more) as fault:
+        said = " ".join(str(fault).split())[:160] or type(fault).__name__
+        msg = f"cannot be read ({said}); write it again"
+        raise Unreadable(msg) from fault
 
 
 def measured(
@@ -43,9 +63,8 @@ def error(check: str, where: str, text: str) -> Finding:
 
 
 def guarded(check: str, where: str, run: Callable[..., Iterable[Finding]], *given: Any) -> Findings:
-    """What ``run`` finds, or that the file cannot be checked: damage can make any reader raise anything."""
+    """What ``run`` finds, or that its file cannot be read; any other exception is a fault of ours and goes on."""
     try:
         return tuple(run(*given))
-    except Exception as fault:
-        said = " ".join(str(fault).split()) or type(fault).__name__
-        return (error(check, where, f"cannot be read ({said[:200]}); write it again"),)
+    except Unreadable as fault:
+        return (error(check, where, str(fault)),)

@@ -21,6 +21,10 @@ CLUSTER_MM = 1.5
 """Side of a cluster of marks; the glue beads lie beside the outer ones."""
 
 
+LETTERS_MM = 0.7
+"""Height of the engraved letters, which run along the plate's side."""
+
+
 @dataclass(frozen=True, eq=False)
 class Wanted:
     """What a part has to be."""
@@ -31,6 +35,10 @@ class Wanted:
     """(4,) low x, low y, high x, high y [mm]; None if not known."""
     volume: float | None = None
     """[mm3]; None if not known."""
+    within: tuple[float, ...] = ()
+    """Heights between the faces at which it has corners too [mm]."""
+    engraving: float = 0.0
+    """What letters may take of the volume at most; if there are none, 0 [mm3]."""
 
 
 def wanted(reference: Reference, masks: Mapping[Plate, Plates]) -> dict[str, Wanted]:
@@ -46,7 +54,8 @@ def wanted(reference: Reference, masks: Mapping[Plate, Plates]) -> dict[str, Wan
             heights = z if plate == "top" else (-z[1], -z[0])
             narrow = job.plates.epoxy_um / 1e3 * math.tan(math.radians(job.plates.release_deg)) * (layer == "land")
             box = glass[0] + narrow * np.array([1, 1, -1, -1]) if glass else None
-            found[f"{plate}_{layer}"] = Wanted(heights, box, _volume(layer, job, glass[0]) if glass else None)
+            volume = _volume(layer, job, glass[0]) if glass else None
+            found[f"{plate}_{layer}"] = Wanted(heights, box, volume, *_outside(layer, job, heights, plate, glass))
     strips = sorted(_outlines(masks.get("bottom"), "SPACER"), key=lambda box: float(box[0]))
     for k, side in enumerate(("left", "right")):
         box = strips[k] if len(strips) == 2 else None
@@ -57,6 +66,18 @@ def wanted(reference: Reference, masks: Mapping[Plate, Plates]) -> dict[str, Wan
     area = float(areas(reference.flat[reference.triangles]).sum())
     found["sheet"] = Wanted((-half, half), np.concatenate([low, high]), area * 2 * half)
     return found
+
+
+def _outside(
+    layer: str, job: Job, heights: tuple[float, float], plate: Plate, glass: list[Floats]
+) -> tuple[tuple[float, ...], float]:
+    """Heights of chamfer and engraving in the outer face of a glass, and what the letters may take of it."""
+    if layer != "glass":
+        return (), 0.0
+    depths = {job.plates.chamfer_mm, job.plates.engraving_um / 1e3} - {0.0}
+    within = tuple(heights[1] - depth if plate == "top" else heights[0] + depth for depth in sorted(depths))
+    side = float(glass[0][3] - glass[0][1]) if glass else np.inf
+    return within, LETTERS_MM * side * job.plates.engraving_um / 1e3
 
 
 def _outlines(plate: Plates | None, layer: str) -> list[Floats]:
@@ -71,10 +92,10 @@ def _volume(layer: str, job: Job, box: Floats) -> float | None:
     """Of a layer of a plate [mm3]: a stack of convex sections, whose area is A - P d + K d^2 at a distance d inwards.
 
     P is the perimeter; K adds tan(half the turn) of the corners: 1 at a right angle, twice tan(22.5 deg) at a notch.
-    None where marks and letters are cut in, whose area only their drawing knows.
+    None for the land, where marks and channels are cut in; letters are not taken off.
     """
     plates, (a, b) = job.plates, box[2:] - box[:2]
-    if layer == "land" or (layer == "glass" and plates.engraving_um):
+    if layer == "land":
         return None
     cut = plates.notch_mm
     area, perimeter = a * b - cut**2 / 2, 2 * (a + b) - (2 - math.sqrt(2)) * cut

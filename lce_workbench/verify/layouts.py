@@ -13,7 +13,7 @@ import numpy as np
 
 from lce_solver.types import Floats
 from lce_workbench.verify import drawings
-from lce_workbench.verify.finding import Unreadable
+from lce_workbench.verify.finding import Unreadable, reading
 
 LAYERS = {1: "CHANNELS", 2: "MARKS", 3: "LABELS", 4: "TEST", 10: "PLATE", 11: "DOMAINS", 12: "SPACER", 13: "SEAM"}
 """Numbers (GDSII, OASIS) and names (DXF, CIF) of the layers."""
@@ -30,8 +30,8 @@ MAX_CORNERS = 4000
 DXF_UNITS = {"1": 25.4e6, "4": 1e6, "5": 1e7, "6": 1e9, "13": MICRON, "12": 1.0}
 """$INSUNITS -> nm."""
 
-DAMAGES = (OSError, ValueError, RuntimeError, KeyError, IndexError, OverflowError, MemoryError)
-"""What readers raise at a damaged file."""
+FARTHEST = 1e12
+"""No corner lies so far out [nm]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,12 +63,12 @@ def read(path: Path) -> Layout:
     Unreadable
         The reader of its format cannot read it.
     """
-    try:
-        return READERS[path.name.partition(".")[2]](path)
-    except DAMAGES as fault:
-        said = " ".join(str(fault).split())[:160]
-        msg = f"cannot be read to its end ({said or type(fault).__name__}); write it again"
-        raise Unreadable(msg) from None
+    with reading():
+        found = READERS[path.name.partition(".")[2]](path)
+    if not all(np.all(np.abs(polygons) < FARTHEST) for polygons in found.layers.values()):
+        msg = "has corners that are no finite numbers, or no unit; write it again"
+        raise Unreadable(msg)
+    return found
 
 
 def _gdstk(path: Path) -> Layout:

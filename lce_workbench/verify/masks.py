@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from lce_solver.types import Finding, Floats
 from lce_workbench.verify import channels, clusters
-from lce_workbench.verify.finding import Findings, Unreadable, error, guarded, measured, same
+from lce_workbench.verify.finding import Findings, Unreadable, error, guarded, measured, reading, same
 from lce_workbench.verify.layouts import LAYERS, Layout, read
 from lce_workbench.verify.reference import Plate, Reference
 from lce_workbench.verify.shapes import areas, centroids, extent, mirrored, unlike
@@ -86,7 +86,7 @@ def _plain(name: str, layout: Layout, plate: Plate, seams: Floats) -> Iterator[F
     wanted = {*LAYERS.values()} - ({"SEAM"} if not len(seams) else set())
     yield same("verify_layers", name, "the list of layers", _listed({*layout.layers, "TEST"}), _listed(wanted))
     yield same("verify_records", name, "what is no polygon", ", ".join(layout.others) or "nothing", "nothing")
-    off = max(float(np.abs(p - np.rint(p)).max(initial=0.0)) for p in layout.layers.values())
+    off = max((float(np.abs(p - np.rint(p)).max(initial=0.0)) for p in layout.layers.values()), default=0.0)
     yield measured("verify_grid", name, "corners are off the grid by", off, 0.0, unit="nm")
 
 
@@ -150,6 +150,8 @@ class Seen:
     def _borders(self) -> Finding:
         """Every domain's outline has its corners at the design's."""
         drawn, corners = self.layer("DOMAINS"), self.reference.corners * 1e6
+        if not len(drawn):
+            return error("verify_outline", self.name, "the outlines of the domains are missing")
         near = cKDTree(centroids(drawn)).query(centroids(corners))[1]
         off = np.linalg.norm(corners[:, :, None] - drawn[near][:, None], axis=3).min(axis=2).max(axis=1)
         worst = int(np.argmax(off))
@@ -203,10 +205,10 @@ def job_sheet(path: Path, found: Mapping[str, Plates]) -> Iterator[Finding]:
     """Counts and areas that the operator compares with the converter's log."""
     name = "mask/job_sheet.txt"
     said = {}
-    for line in path.read_text(encoding="utf-8").splitlines():
-        words = line.split()
-        if len(words) == 6 and words[0] in LAYERS.values():
-            said[words[0]] = [(int(words[2]), float(words[3])), (int(words[4]), float(words[5]))]
+    with reading():
+        for words in map(str.split, path.read_text(encoding="utf-8").splitlines()):
+            if len(words) == 6 and words[0] in LAYERS.values():
+                said[words[0]] = [(int(words[2]), float(words[3])), (int(words[4]), float(words[5]))]
     wanted = {*LAYERS.values()} - {layer for layer in ("SEAM",) if layer not in found["bottom"].totals}
     yield same("verify_job_sheet", name, "the list of layers", _listed(said), _listed(wanted))
     for layer, pair in said.items():

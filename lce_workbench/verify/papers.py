@@ -12,11 +12,15 @@ from typing import Any
 import numpy as np
 
 from lce_solver.types import Finding, Floats
-from lce_workbench.verify.finding import Unreadable, error, measured, same
+from lce_workbench.verify.finding import Unreadable, error, measured, reading, same
 from lce_workbench.verify.reference import Reference, arrays
 
 TABLE_DEG = 1e-6
 """The table's angles have six decimals [degrees]."""
+
+COLUMNS = ("domain", "x_mm", "y_mm", "area_mm2", "theta_deg", "dtheta_deg", "theta_top_deg", "theta_bottom_deg",
+           "written_top_deg", "written_bottom_deg", "stretch_along", "stretch_across", "channels_top",
+           "channels_bottom")  # fmt: skip
 
 SAME = 1e-9
 """Relative difference between two evaluations of one formula."""
@@ -107,14 +111,19 @@ def table(path: Path) -> dict[str, Floats]:
     Unreadable
         It is missing, or not a table of numbers.
     """
-    try:
+    with reading():
         with path.open(encoding="utf-8", newline="") as file:
             rows = list(csv.reader(file))
-        columns = np.array([[float(cell) for cell in row] for row in rows[1:]]).T
-        return dict(zip(rows[0], columns, strict=True))
-    except (OSError, ValueError, IndexError, csv.Error) as fault:
-        msg = f"{path.name} is missing or not a table of numbers ({fault})"
-        raise Unreadable(msg) from None
+        values = np.array([[float(cell) for cell in row] for row in rows[1:]]).T
+        found = dict(zip(rows[0], values, strict=True))
+    lacking = [name for name in COLUMNS if name not in found]
+    if lacking:
+        msg = f"lacks the columns {', '.join(lacking)}; write it again"
+        raise Unreadable(msg)
+    for column, row in np.argwhere(~np.isfinite(values))[:1]:
+        msg = f"holds {values[column, row]:g} as {rows[0][column]} in row {row + 1}; write it again"
+        raise Unreadable(msg)
+    return found
 
 
 def angles(path: Path, reference: Reference) -> Iterator[Finding]:
@@ -160,11 +169,18 @@ def _column(column: str, off: Floats, limit: float, unit: str, reference: Refere
 def prediction(folder: Path, reference: Reference) -> Iterator[Finding]:
     """`prediction.json` from the shapes in `prediction.npz`: distances after the best rigid motion (Kabsch 1976)."""
     name, shapes = "prediction.json", "prediction.npz"
-    record = json.loads((folder / name).read_text(encoding="utf-8"))
-    found = arrays(folder / shapes, ("vertices", "frames"))
-    points, target = found["vertices"], reference.target
-    if points.shape != target.shape or not np.all(np.isfinite(points)):
-        yield error("verify_prediction", shapes, f"holds {points.shape} numbers for a target of {target.shape}")
+    with reading():
+        record = json.loads((folder / name).read_text(encoding="utf-8"))
+        said = {key: float(record[key]) for key in ("rms_pct", "max_pct", "mirror_rms_pct", "mirrored")}
+    try:
+        found = arrays(folder / shapes, ("vertices", "frames"))
+    except Unreadable as fault:
+        yield error("verify_prediction", shapes, str(fault))
+        return
+    points, frames, target = found["vertices"], found["frames"], reference.target
+    if points.shape != target.shape or frames.shape[1:] != target.shape or not len(frames):
+        text = f"holds {points.shape} and {frames.shape} numbers for a target of {target.shape}"
+        yield error("verify_prediction", shapes, text)
         return
     diagonal = float(np.linalg.norm(np.ptp(target, axis=0)))
     corners = target[reference.triangles]
@@ -175,10 +191,10 @@ def prediction(folder: Path, reference: Reference) -> Iterator[Finding]:
     rms, mirror = (100 / diagonal * float(np.sqrt(share @ d**2)) for d in (distance, mirrored))
     wanted = {"rms_pct": rms, "max_pct": 100 / diagonal * float(distance.max()), "mirror_rms_pct": mirror}
     for key, value in wanted.items():
-        off = abs(float(record[key]) - value) / max(abs(value), 1e-6)
+        off = abs(said[key] - value) / max(abs(value), 1e-6)
         yield measured("verify_prediction", name, f"{key} differs from the shapes' by the fraction", off, 1e-6)
-    yield same("verify_prediction", name, "mirrored", record["mirrored"], bool(mirror < rms * (1 - 1e-6)))
-    off = float(np.abs(found["frames"][-1] - points).max())
+    yield same("verify_prediction", name, "mirrored", bool(said["mirrored"]), bool(mirror < rms * (1 - 1e-6)))
+    off = float(np.abs(frames[-1] - points).max())
     yield measured("verify_prediction", shapes, "the last frame differs from the shape by", off, 0.0, unit="mm")
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,7 +13,7 @@ import numpy as np
 from lce_solver.types import Floats, Ints
 from lce_workbench.core import jobfile
 from lce_workbench.core.job import Job
-from lce_workbench.verify.finding import Unreadable
+from lce_workbench.verify.finding import Unreadable, reading
 from lce_workbench.verify.shapes import areas, centroids
 
 Plate = Literal["bottom", "top"]
@@ -142,7 +141,7 @@ def _own(data: Mapping[str, Any], phased: bool) -> dict[str, Floats]:
     rows = _indices(polygons, data["domain_vertices"], -1)
     sides = np.sum(rows >= 0, axis=1)
     if sides.min() < 3:
-        msg = "design.npz: a domain has fewer than three corners"
+        msg = "a domain has fewer than three corners"
         raise Unreadable(msg)
     place = np.minimum(np.arange(rows.shape[1]), sides[:, None] - 1)
     found = {name: data[f"domain_{name}"].astype(np.float64) for name in ("theta", "dtheta", "stretch", "phase")}
@@ -150,12 +149,11 @@ def _own(data: Mapping[str, Any], phased: bool) -> dict[str, Floats]:
 
 
 def _require(data: Mapping[str, Any], shapes: Mapping[str, tuple[str | int, ...]], sizes: Mapping[str, int]) -> None:
-    """Refuse arrays of other shapes, and what is no finite number."""
+    """Refuse arrays of other shapes."""
     for name, shape in shapes.items():
         wanted = tuple(sizes[n] if isinstance(n, str) else n for n in shape)
-        numeric = np.issubdtype(data[name].dtype, np.number)
-        if data[name].shape != wanted or not numeric or not np.all(np.isfinite(data[name])):
-            msg = f"design.npz: {name} has the shape {data[name].shape} instead of {wanted}, or holds no finite numbers"
+        if data[name].shape != wanted:
+            msg = f"{name} has the shape {data[name].shape} instead of {wanted}; write it again"
             raise Unreadable(msg)
 
 
@@ -163,7 +161,7 @@ def _indices(rows: Any, points: Floats, low: int) -> Ints:
     """Rows of indices of points."""
     found: Ints = rows.astype(np.int64)
     if not len(found) or found.min() < low or found.max() >= len(points):
-        msg = "design.npz: domains name points that do not exist"
+        msg = "domains name points that do not exist"
         raise Unreadable(msg)
     return found
 
@@ -177,11 +175,12 @@ def arrays(path: Path, names: tuple[str, ...]) -> dict[str, Floats]:
         The file is missing, damaged, or lacks one of them.
     """
     if not path.is_file():
-        msg = f"{path.name} is missing, or no file; run `./lce design` again"
+        msg = "is missing, or no file; write it again"
         raise Unreadable(msg)
-    try:
-        with np.load(path, allow_pickle=False) as data:
-            return {name: data[name] for name in names}
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, AttributeError) as fault:
-        msg = f"{path.name} cannot be read ({fault}); run `./lce design` again"
-        raise Unreadable(msg) from None
+    with reading(), np.load(path, allow_pickle=False) as data:
+        found = {name: data[name] for name in names}
+    for name, values in found.items():
+        if not np.issubdtype(values.dtype, np.number) or not np.all(np.isfinite(values)) or np.iscomplexobj(values):
+            msg = f"{name} holds what is no finite number; write it again"
+            raise Unreadable(msg)
+    return found

@@ -8,11 +8,11 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from lce_solver.errors import EnvironmentFault, LceError
+from lce_solver.errors import EnvironmentFault, InputError
 from lce_solver.types import Finding, Progress, silent
 from lce_workbench.outputs import read_manifest
 from lce_workbench.verify import cells, document, masks, papers, workers
-from lce_workbench.verify.finding import Findings, error, guarded
+from lce_workbench.verify.finding import Findings, Unreadable, error, guarded
 from lce_workbench.verify.reference import PLATES, Plate, Reference, read
 from lce_workbench.verify.solids import Part
 
@@ -46,8 +46,10 @@ def verify(folder: Path, progress: Progress = silent) -> Findings:
     found += guarded("verify_files", "manifest.json", papers.contents, folder, stages, EXPECTED)
     try:
         reference = read(folder)
-    except LceError as fault:
-        return (*found, error("verify_design", "design.npz", f"no design to compare with ({fault})"))
+    except Unreadable as fault:
+        return (*found, error("verify_design", "design.npz", f"no design to compare with: it {fault}"))
+    except InputError as fault:
+        return (*found, error("verify_job", "job.toml", f"no job to compare with ({fault})"))
     return (*found, *_papers(folder, stages, reference), *_drawn(folder, stages, reference, progress))
 
 
@@ -69,7 +71,7 @@ def _papers(folder: Path, stages: list[str], reference: Reference) -> Findings:
 
 def _drawn(folder: Path, stages: list[str], reference: Reference, progress: Progress) -> Findings:
     """Masks and CAD files."""
-    counts = _counts(folder)
+    counts = _counts(folder, len(reference.theta))
     tasks: dict[str, workers.Task] = {}
     if "mask" in stages:
         tasks |= {f"mask/{p}": (masks.check, (folder, p, reference, counts.get(p))) for p in PLATES}
@@ -99,13 +101,14 @@ def _document(result: Any, known: dict[str, Part]) -> Iterable[Finding]:
     return document.check(workers.value(result), known)
 
 
-def _counts(folder: Path) -> dict[Plate, Any]:
+def _counts(folder: Path, domains: int) -> dict[Plate, Any]:
     """Channels of each domain by `domains.csv`; what is wrong with the table was told before."""
     try:
         columns = papers.table(folder / "domains.csv")
-    except LceError:
+    except Unreadable:
         return {}
-    return {plate: columns[f"channels_{plate}"] for plate in PLATES if f"channels_{plate}" in columns}
+    found = {plate: columns[f"channels_{plate}"] for plate in PLATES}
+    return found if all(len(column) == domains for column in found.values()) else {}
 
 
 def _masks(folder: Path, got: dict[str, Any]) -> tuple[Findings, dict[Plate, masks.Plates]]:
@@ -116,8 +119,8 @@ def _masks(folder: Path, got: dict[str, Any]) -> tuple[Findings, dict[Plate, mas
         try:
             told, held[plate] = workers.value(got[f"mask/{plate}"])
             found += told
-        except Exception as fault:
-            found += (error("verify_mask", f"mask/{plate}.*", f"cannot be read ({fault}); write it again"),)
+        except Unreadable as fault:
+            found += (error("verify_mask", f"mask/{plate}.*", str(fault)),)
     if len(held) == len(PLATES) and all(facts.name for facts in held.values()):
         found += guarded("verify_overlay", "mask", masks.both, held, folder / "mask" / "readings.csv")
         sheet = folder / "mask" / "job_sheet.txt"

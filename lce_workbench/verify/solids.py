@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from lce_solver.types import Floats
-from lce_workbench.verify.finding import Unreadable
+from lce_workbench.verify.finding import Unreadable, reading
 
 READABLE = 2000
 """Channels that the kernel reads in some seconds; of larger files the statements are counted."""
@@ -39,6 +39,8 @@ class Part:
     """(3,) [mm]."""
     valid: bool
     """By the kernel's own check; true when it was not asked."""
+    levels: Floats
+    """(k,) heights of its corners, ascending [mm]."""
 
     def like(self, other: Part) -> bool:
         """Whether both have the same box and volume, to 1 nm and a millionth."""
@@ -54,7 +56,9 @@ def parts(path: Path, *, validate: bool = True) -> list[Part]:
     Unreadable
         OpenCASCADE cannot read the file, or finds no part in it.
     """
-    with tempfile.TemporaryDirectory() as folder:
+    from OCP.Standard import Standard_Failure
+
+    with reading(Standard_Failure), tempfile.TemporaryDirectory() as folder:
         plain = path
         if path.suffix == ".gz":
             plain = Path(folder) / "channels.step"
@@ -145,7 +149,7 @@ def _part(name: str, shape: Any, validate: bool) -> Part:
     low, high = (points.min(axis=0), points.max(axis=0)) if len(points) else (np.full(3, np.nan),) * 2
     valid = BRepCheck_Analyzer(shape).IsValid() if validate else True
     count = sum(1 for _ in _inside(shape, TopAbs_SOLID))
-    return Part(name, count, properties.Mass(), low, high, valid)
+    return Part(name, count, properties.Mass(), low, high, valid, np.unique(points[:, 2].round(8)))
 
 
 def _inside(shape: Any, kind: Any) -> Iterator[Any]:
@@ -165,11 +169,11 @@ def counted(path: Path) -> tuple[int, list[str]]:
 
     Raises
     ------
-    OSError
-        The file cannot be read.
+    Unreadable
+        It is missing or damaged.
     """
     names, placed, mapped = [], 0, 0
-    with gzip.open(path) if path.suffix == ".gz" else path.open("rb") as file:
+    with reading(), gzip.open(path) if path.suffix == ".gz" else path.open("rb") as file:
         for line in file:
             hit = STATEMENT.search(line)
             if hit and hit[1] == b"PRODUCT":

@@ -9,6 +9,8 @@ from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
 from typing import Any
 
+from lce_workbench.verify.finding import Unreadable
+
 Task = tuple[Callable[..., Any], tuple[Any, ...]]
 
 WORKERS = 2
@@ -28,8 +30,8 @@ def run(tasks: Mapping[str, Task], told: Callable[[str], None]) -> dict[str, Any
 def value(result: Any) -> Any:
     """What a task returned, or raise what it raised."""
     if isinstance(result, BrokenProcessPool):
-        msg = "its reader died"
-        raise ValueError(msg)  # noqa: TRY004
+        msg = "cannot be read (its reader died); write it again"
+        raise Unreadable(msg)
     if isinstance(result, Exception):
         raise result
     return result

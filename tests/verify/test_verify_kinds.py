@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 import trimesh
-from tampering import errors, grouped, redraw
+from tampering import errors, grouped, redraw, replaced
 
 from lce_workbench import pipeline
 from lce_workbench.core import jobfile
@@ -70,3 +72,62 @@ def test_the_lines_on_a_cut(tmp_path):
     assert found["verify_seams"][0].value == pytest.approx(5, abs=1)
     redraw(path, lambda shapes: [(layer, points) for layer, points in shapes if layer != 13])
     assert "SEAM" in errors(out)["verify_layers"][0].message
+
+
+WORKSHOP = """[plates]
+chamfer_mm = 0.2
+release_deg = 10.0
+notch_mm = 1.0
+frame_mm = 5.0
+engraving_um = 120.0
+"""
+
+
+def test_workshop_options(tmp_path):
+    """A job that says something else of every option: its part is found, and only it."""
+    out = made(tmp_path, ["design", "mask", "cad"], dome() + WORKSHOP, "step_window_um = [-100, -100, 100, 100]")
+    for former, other in (
+        ("release_deg = 10.0", "release_deg = 11.0"),
+        ("bead_mm = 1.0", "bead_mm = 1.1"),
+        ("frame_clearance_um = 50.0", "frame_clearance_um = 60.0"),
+        ("engraving_um = 120.0", "engraving_um = 130.0"),
+        ("-100.0, -100.0, 100.0, 100.0", "-100.0, -100.0, 400.0, 100.0"),
+    ):
+        replaced(out / "job.toml", former, other)
+    found = errors(out)
+    wrong = {check: {f.where.rpartition(", ")[2] for f in told} for check, told in found.items()}
+    assert wrong.pop("verify_volume") == {"top_epoxy", "bottom_epoxy", "glue_left", "glue_right", "alignment_frame"}
+    assert wrong.pop("verify_levels") == {"top_glass", "bottom_glass"}
+    assert {"glue_left", "glue_right", "alignment_frame", "top_land"} <= wrong.pop("verify_extent")
+    assert all("domains that are missing or too many" in f.message for f in found["verify_parts"])
+    replaced(out / "job.toml", "chamfer_mm = 0.2", "chamfer_mm = 0.21")
+    text = (out / "job.toml").read_text()
+    assert {"top_glass", "bottom_glass"} <= {f.where.rpartition(", ")[2] for f in errors(out)["verify_levels"]}
+    (out / "job.toml").write_text(re.sub(r"engraving_um = .*", "engraving_um = 0.0", text))
+    found = errors(out)  # letters where none are asked for, and more glass than the chamfer leaves
+    assert {"top_glass", "bottom_glass"} <= {f.where.rpartition(", ")[2] for f in found["verify_volume"]}
+
+
+def test_a_name_that_was_not_engraved(tmp_path):
+    out = made(tmp_path, ["design", "mask", "cad"], f"{dome()}[plates]\n")
+    replaced(out / "job.toml", "engraving_um = 0.0", "engraving_um = 100.0")
+    found = errors(out)
+    assert [f.where for f in found["verify_engraving"]] == [
+        f"cad/{file}.step, {plate}_glass"
+        for file, plate in (("bottom_plate", "bottom"), ("top_plate", "top"), ("cell", "bottom"), ("cell", "top"))
+    ]
+
+
+@pytest.mark.parametrize("way", ["mapped", "assembly"])
+def test_all_channels_as_solids_of_which_one_is_dropped(tmp_path, way):
+    size = dome(420).replace("1.5", "2.0")
+    out = made(tmp_path, ["design", "mask", "cad"], size, f'step = "all"\nstep_instances = "{way}"')
+    path = out / "cad" / "channels_top.step"
+    statement = {"mapped": "MAPPED_ITEM", "assembly": "NEXT_ASSEMBLY_USAGE_OCCURRENCE"}[way]
+    lines = path.read_text().splitlines(keepends=True)
+    gone = [line for line in lines if f"={statement}(" in line][-1]
+    text = "".join(line for line in lines if line != gone)
+    path.write_text(re.sub(rf",{gone.partition('=')[0]}(?=[,)])", "", text, count=1))
+    (finding,) = errors(out)["verify_channel_solids"]
+    assert finding.where == "cad/channels_top.step"
+    assert finding.value == 1
