@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Mapping, Sequence
+import zipfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -13,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from lce_solver.compare import align, vertex_areas
+from lce_solver.errors import InputError
 from lce_solver.judge import stretch_errors
 from lce_solver.types import Design, Floats, Ints
 from lce_workbench.core import jobfile
@@ -72,6 +75,8 @@ class Review:
     inputs: tuple[Mapping[str, Any], ...]
     files: tuple[Mapping[str, Any], ...]
     """Path, size [bytes] and SHA-256 of every file."""
+    studies: tuple[Mapping[str, Any], ...]
+    """`studies/*.json`: how many of the samples arrive for each value of a fault."""
     prediction: Predicted | None
     cell: tuple[Part, ...] | None
 
@@ -83,8 +88,7 @@ class Review:
     @cached_property
     def columns(self) -> dict[str, Floats]:
         """The columns of `domains.csv`, each (n_d,)."""
-        names, *rows = csv.reader(self.table.splitlines())
-        return dict(zip(names, np.array(rows, dtype=np.float64).T, strict=True))
+        return _columns(self.table)
 
     @cached_property
     def errors(self) -> Floats:
@@ -102,44 +106,77 @@ class Review:
         return self.job.target.surface or Path(self.job.target.mesh).name
 
 
+def _columns(table: str) -> dict[str, Floats]:
+    names, *rows = csv.reader(table.splitlines())
+    return dict(zip(names, np.array(rows, dtype=np.float64).T, strict=True))
+
+
+@contextmanager
+def _read(path: Path, again: str) -> Iterator[None]:
+    """Turn what happens with a damaged file into one sentence."""
+    try:
+        yield
+    except (OSError, ValueError, LookupError, TypeError, EOFError, zipfile.BadZipFile) as fault:
+        said = " ".join(str(fault).split())[:120]
+        msg = f"{path} is missing or damaged ({said}); run `./lce {again}` on its folder again"
+        raise InputError(msg) from fault
+
+
 def assemble(folder: Path, checked: Sequence[Mapping[str, Any]] = ()) -> Review:
     """Read a folder; ``checked`` are the records of what the check of the written files found.
 
     Raises
     ------
     InputError
-        The folder is not ours, or its design cannot be read.
+        The folder is not ours, or a file of it cannot be read.
     """
     manifest = read_manifest(folder)
-    design = read_design(folder / "design.npz")
+    design, domains = read_design(folder / "design.npz"), read_domains(folder / "design.npz")
     former = (record for record in manifest["findings"] if record["stage"] != STAGE)
     return Review(
         job=jobfile.load(folder / "job.toml"),
         design=design,
-        domains=read_domains(folder / "design.npz"),
-        table=(folder / "domains.csv").read_text(encoding="ascii"),
+        domains=domains,
+        table=_table(folder / "domains.csv", len(domains)),
         findings=(*former, *checked),
         versions=manifest["versions"],
         inputs=tuple(manifest["inputs"]),
         files=tuple(entry for entry in manifest["files"] if not entry["path"].startswith(OWN)),
+        studies=tuple(_study(path) for path in sorted(folder.glob("studies/*.json"))),
         prediction=_prediction(folder, design),
         cell=_cell(folder / "cad" / "cell.glb"),
     )
 
 
-def _json(path: Path) -> dict[str, Any] | None:
-    return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else None
+def _table(path: Path, count: int) -> str:
+    """`domains.csv`, as it is; a row of numbers for each domain."""
+    with _read(path, "design"):
+        text = path.read_text(encoding="ascii")
+        columns = _columns(text)
+        wrong = [name for name, column in columns.items() if len(column) != count or not np.all(np.isfinite(column))]
+        if wrong:
+            msg = f"{wrong[0]} holds no finite number for one of {count} domains"
+            raise ValueError(msg)
+    return text
+
+
+def _study(path: Path) -> dict[str, Any]:
+    with _read(path, f"study {path.stem}"):
+        told: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        _ = told["study"], told["question"], told["axis"], told["samples"], told["reached_below_rms_pct"], told["table"]
+    return told
 
 
 def _prediction(folder: Path, design: Design) -> Predicted | None:
-    record = _json(folder / "prediction.json")
-    if record is None:
+    path, target = folder / "prediction.json", design.surface.vertices
+    if not path.is_file():
         return None
-    with np.load(folder / "prediction.npz", allow_pickle=False) as data:
-        frames = data["frames"]
-    target = design.surface.vertices
+    with _read(path, "predict"):
+        record = json.loads(path.read_text(encoding="utf-8"))
+        lambdas = np.array([1.0, *(step["lambda_"] for step in record["heating"])])
+    with _read(folder / "prediction.npz", "predict"), np.load(folder / "prediction.npz", allow_pickle=False) as data:
+        frames = data["frames"].reshape(len(lambdas) - 1, *target.shape)
     laid = align(frames[-1], target, vertex_areas(target, design.surface.faces))
-    lambdas = np.array([1.0, *(step["lambda_"] for step in record["heating"])])
     flat = np.column_stack([design.uv, np.zeros(len(design.uv))])
     frames = np.concatenate([flat[None], frames])
     return Predicted(record, frames @ laid.rotation.T + laid.shift, lambdas, laid.distance)
@@ -150,12 +187,13 @@ def _cell(path: Path) -> tuple[Part, ...] | None:
         return None
     import trimesh
 
-    scene = trimesh.load_scene(path)
     parts = []
-    for node in sorted(scene.graph.nodes_geometry):
-        motion, name = scene.graph[node]
-        mesh = scene.geometry[name]
-        x, y, z = (mesh.vertices @ motion[:3, :3].T + motion[:3, 3]).T * PARTS_MM
-        colour = np.asarray(mesh.visual.material.baseColorFactor) / 255
-        parts.append(Part(node, tuple(colour.tolist()), np.column_stack([x, -z, y]), np.asarray(mesh.faces)))
+    with _read(path, "cad"):
+        scene = trimesh.load_scene(path)
+        for node in sorted(scene.graph.nodes_geometry):
+            motion, name = scene.graph[node]
+            mesh = scene.geometry[name]
+            x, y, z = (mesh.vertices @ motion[:3, :3].T + motion[:3, 3]).T * PARTS_MM
+            colour = np.asarray(mesh.visual.material.baseColorFactor) / 255
+            parts.append(Part(node, tuple(colour.tolist()), np.column_stack([x, -z, y]), np.asarray(mesh.faces)))
     return tuple(parts)

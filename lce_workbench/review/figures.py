@@ -55,10 +55,11 @@ class Plan:
 
 
 def drawn(review: Review, record: Mapping[str, Any]) -> tuple[Drawn, ...]:
-    """Every figure that the folder has data for."""
+    """Every figure that the folder has data for, and one for each study in it."""
+    studies = {f"study-{told['study']}": _study_plan(told) for told in record["studies"]}
     return tuple(
         Drawn(name, plan.title, plan.caption, _svg(plan, review, record))
-        for name, plan in FIGURES.items()
+        for name, plan in {**FIGURES, **studies}.items()
         if plan.wanted(review)
     )
 
@@ -164,6 +165,35 @@ def _budget(_review: Review, record: Mapping[str, Any], axes: Axes) -> None:
     axes.invert_yaxis()
     axes.set(xlabel="µm, half of the 95 % interval")
     axes.set_xlim(0, told["tolerance_um"] * 1.12)
+
+
+OUTCOME = ("samples", "reached", "mirrored", "rms_pct_median", "rms_pct_max")
+"""What a row of a study's table says of its samples; the other names are the value that was tried."""
+
+
+def _study_plan(told: Mapping[str, Any]) -> Plan:
+    """The figure of one study in the folder."""
+
+    def draw(_review: Review, _record: Mapping[str, Any], axes: Axes) -> None:
+        table, limit = told["table"], told["reached_below_rms_pct"]
+        for k, row in enumerate(table):
+            colour = FIRST if row["reached"] == 1 else SECOND
+            axes.plot([k, k], [row["rms_pct_median"], row["rms_pct_max"]], color=colour)
+            axes.plot(k, row["rms_pct_median"], "o" if row["reached"] == 1 else "s", color=colour, markersize=4)
+        axes.axhline(limit, color=PALE, linestyle="--", linewidth=0.8)
+        axes.annotate(f"limit, {limit:g} %", (1, limit), (-2, 2), axes.get_yaxis_transform(), "offset points",
+                      ha="right", color=PALE)  # fmt: skip
+        values = [", ".join(f"{value:g}" for name, value in row.items() if name not in OUTCOME) for row in table]
+        shares = [f"{value}\n{row['reached']:.0%}" for value, row in zip(values, table, strict=True)]
+        axes.set_xticks(range(len(table)), shares, fontsize=7)
+        axes.margins(x=0.08, y=0.2)
+        axes.set(xlabel=f"{told['axis']}; share that arrives", ylabel="rms from the target [%]", yscale="log")
+
+    caption = (
+        f"{told['question']} {told['samples']} simulated samples: median (mark) and largest (line) distance from the "
+        "target; orange squares where some samples miss it or become its mirror image."
+    )
+    return Plan(f"Study: {told['study']}", caption, draw)
 
 
 FIGURES: dict[str, Plan] = {

@@ -13,6 +13,7 @@ from lce_solver.compare import Verdict
 from lce_solver.types import Floats, Status
 from lce_workbench import ROOT
 from lce_workbench.core import jobfile
+from lce_workbench.core.perturb import STUDIES
 from lce_workbench.core.units import UM
 from lce_workbench.review.data import STAGE, Review
 from lce_workbench.review.measures import PAPERS, POLARISERS, anchoring, bending, budget, transmission
@@ -61,6 +62,7 @@ def as_record(review: Review) -> dict[str, Any]:
         "prediction": review.prediction.record if review.prediction else None,
         "twist": twist(review),
         "starts": starts(review),
+        "studies": list(review.studies),
         "energy": [short(e) for e in review.design.flattening.energy],
         "alignment": alignment(review),
         "anchoring": {"depth_um": review.job.channels.depth_um, "pitch_um": short(review.job.channels.pitch / UM),
@@ -282,8 +284,11 @@ def left_out(review: Review) -> Iterator[str]:
         yield "Assembled cell: run `./lce cad` on the folder, then `./lce review`."
     if not review.design.starts:
         yield "Starts that competed: the design does not record them."
-    if not any(r["check"] == "study" for r in review.findings):
-        yield "Tolerance study: run `./lce study NAME` on the folder, then `./lce review`."
+    if not review.studies:
+        yield (
+            "Tolerance study: run `./lce study NAME DIR` on the folder, NAME being one of "
+            f"{', '.join(STUDIES)}, then `./lce review DIR`."
+        )
 
 
 def _numbers(column: Floats) -> list[float]:

@@ -8,9 +8,11 @@ import shutil
 import jsonschema
 import numpy as np
 import pytest
+from pypdf import PdfReader
 
 from lce_workbench import ROOT
 from lce_workbench.cli import main
+from lce_workbench.core.perturb import STUDIES
 from lce_workbench.outputs import read_manifest
 from lce_workbench.review.data import assemble
 
@@ -92,6 +94,25 @@ def test_what_the_folder_lacks_is_left_out_and_told_and_the_jobs_numbers_are_in_
     assert "0.8 µm deep" in text
     assert not re.search(r"\{[a-z]+_", text)
     assert all(step["source"] for step in record["process"])
+
+
+def test_the_studies_of_the_folder_are_figures_on_page_and_paper(plain):
+    assert main(["review", str(plain), "--quiet"]) == 0
+    assert any("lce study NAME" in line and "misalignment" in line for line in report(plain)["left_out"])
+    assert 'id="fig-study-twist"' not in (plain / "report.html").read_text(encoding="utf-8")
+    assert main(["study", "twist", str(plain), "--samples", "5", "--quiet"]) == 0
+    assert main(["review", str(plain), "--quiet"]) == 0
+    record = report(plain)
+    jsonschema.validate(record, SCHEMA)
+    assert record["studies"] == [json.loads((plain / "studies" / "twist.json").read_text(encoding="utf-8"))]
+    assert not any("study" in line for line in record["left_out"])
+    page = (plain / "report.html").read_text(encoding="utf-8")
+    figure = page[page.index('id="fig-study-twist"') :]
+    assert STUDIES["twist"].question in figure.split("</figcaption>")[0]
+    drawn = figure[figure.index("<svg") : figure.index("</svg>")]
+    assert all(f">{row['reached']:.0%}<" in drawn for row in record["studies"][0]["table"])
+    text = "".join(leaf.extract_text() for leaf in PdfReader(plain / "report.pdf").pages)
+    assert "Study: twist" in text
 
 
 def test_another_stage_makes_the_former_review_go(folder):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import sys
 
 import pytest
 from tampering import refresh
@@ -39,6 +40,12 @@ def built(tmp_path_factory):
     folder = tmp_path_factory.mktemp("verify") / "built"
     assert pipeline.build(jobfile.parse(JOB), folder.parent, folder, ["design", "predict", "mask", "cad"]) in {0, 1}
     return folder
+
+
+@pytest.fixture
+def alone(monkeypatch):
+    """As inside FreeCAD: readers work in this process, which has imported them once and where its faults are."""
+    monkeypatch.setitem(sys.modules, "FreeCAD", None)
 
 
 @pytest.fixture

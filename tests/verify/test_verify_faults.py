@@ -15,14 +15,13 @@ from lce_workbench.verify import cells, channels, masks, papers
 
 
 @pytest.mark.parametrize("place", [(papers, "angles"), (masks, "both"), (channels, "check")])
-def test_a_fault_of_ours_is_no_finding(masked, monkeypatch, capsys, place):
-    """In this process, and in that of a reader: exit code 4, and nothing is said to be well or wrong."""
+def test_a_fault_of_ours_is_no_finding(masked, alone, monkeypatch, capsys, place):
+    """Exit code 4, and nothing is said to be well or wrong."""
 
     def broken(*_):
         raise ZeroDivisionError
 
     monkeypatch.setattr(*place, broken)
-    monkeypatch.setitem(sys.modules, "FreeCAD", None)  # readers stay in this process, where the fault is
     assert main(["verify", str(masked), "--quiet"]) == 4
     told = capsys.readouterr()
     assert "internal fault (ZeroDivisionError" in told.err
@@ -43,7 +42,7 @@ def test_every_file_that_is_missing_is_named(copy, part):
 
 
 @pytest.mark.parametrize("text", ["nan", "inf", "", "x"])
-def test_what_is_no_number_in_the_table(masked, text):
+def test_what_is_no_number_in_the_table(masked, alone, text):
     rewritten(masked / "domains.csv", 4, "channels_top", lambda _: text)
     (finding,) = errors(masked)["verify_table"]
     assert finding.where == "domains.csv"
@@ -51,7 +50,7 @@ def test_what_is_no_number_in_the_table(masked, text):
         assert "channels_top in row 5" in finding.message
 
 
-def test_a_table_without_a_column_and_a_longer_one(masked):
+def test_a_table_without_a_column_and_a_longer_one(masked, alone):
     path = masked / "domains.csv"
     whole = path.read_text()
     path.write_text(whole.replace("channels_top", "channels"))
@@ -60,7 +59,7 @@ def test_a_table_without_a_column_and_a_longer_one(masked):
     assert "number of rows" in errors(masked)["verify_table"][0].message
 
 
-def test_numbers_in_the_design_that_are_none(masked):
+def test_numbers_in_the_design_that_are_none(masked, alone):
     with np.load(masked / "design.npz") as data:
         arrays = {name: data[name] for name in data.files}
     for name, value in (("theta", np.nan), ("stretch", "text"), ("uv", 1j)):

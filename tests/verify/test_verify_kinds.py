@@ -83,7 +83,7 @@ engraving_um = 120.0
 """
 
 
-def test_workshop_options(tmp_path):
+def test_workshop_options(tmp_path, alone):
     """A job that says something else of every option: its part is found, and only it."""
     out = made(tmp_path, ["design", "mask", "cad"], dome() + WORKSHOP, "step_window_um = [-100, -100, 100, 100]")
     for former, other in (
@@ -108,7 +108,7 @@ def test_workshop_options(tmp_path):
     assert {"top_glass", "bottom_glass"} <= {f.where.rpartition(", ")[2] for f in found["verify_volume"]}
 
 
-def test_a_name_that_was_not_engraved(tmp_path):
+def test_a_name_that_was_not_engraved(tmp_path, alone):
     out = made(tmp_path, ["design", "mask", "cad"], f"{dome()}[plates]\n")
     replaced(out / "job.toml", "engraving_um = 0.0", "engraving_um = 100.0")
     found = errors(out)
@@ -119,7 +119,7 @@ def test_a_name_that_was_not_engraved(tmp_path):
 
 
 @pytest.mark.parametrize("way", ["mapped", "assembly"])
-def test_all_channels_as_solids_of_which_one_is_dropped(tmp_path, way):
+def test_all_channels_as_solids_of_which_one_is_dropped(tmp_path, alone, way):
     size = dome(420).replace("1.5", "2.0")
     out = made(tmp_path, ["design", "mask", "cad"], size, f'step = "all"\nstep_instances = "{way}"')
     path = out / "cad" / "channels_top.step"
