@@ -16,7 +16,7 @@ POLYLINES = (b"LWPOLYLINE", b"POLYLINE")
 
 CORNERED = (b"LWPOLYLINE", b"VERTEX")
 
-STRUCTURE = (*POLYLINES, b"SECTION", b"ENDSEC", b"VERTEX", b"SEQEND", b"BLOCK", b"ENDBLK")
+STRUCTURE = (*POLYLINES, b"SECTION", b"ENDSEC", b"VERTEX", b"SEQEND", b"BLOCK", b"ENDBLK", b"EOF")
 
 DIGIT, BLANK = (np.isin(np.arange(256), tuple(known)) for known in (b"0123456789", b" \t\r\n"))
 """(256,) whether a byte is one."""
