@@ -150,7 +150,10 @@ def _budget(_review: Review, record: Mapping[str, Any], axes: Axes) -> None:
     names = ["one vernier", "shift", "rotation × lever", "scale × lever", "read-out, total", "left for the hand"]
     axes.barh(names[: len(rows)], [row["value_um"] for row in rows], color=[FIRST] * 4 + [THIRD, PALE], height=0.6)
     for k, row in enumerate(rows):
-        axes.annotate(f"{row['value_um']:.2f}", (row["value_um"], k), (4, 0), textcoords="offset points", va="center")
+        beyond = 18 if row["value_um"] > 0.85 * told["tolerance_um"] else 4  # beyond the line of the tolerance
+        axes.annotate(
+            f"{row['value_um']:.2f}", (row["value_um"], k), (beyond, 0), textcoords="offset points", va="center"
+        )
     axes.axvline(told["tolerance_um"], color=SECOND)
     axes.annotate(
         "tolerance",

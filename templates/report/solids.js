@@ -84,9 +84,11 @@ function showShape() {
     $("shape-lambda").textContent = +heat.value ? `λ = ${meta.lambdas[+heat.value].toFixed(3)}` : "λ = 1 (flat)";
   };
   heat.addEventListener("input", heated);
-  $("shape-show").addEventListener("change", event => { hot.shown = event.target.value !== "target"; goal.shown = event.target.value !== "prediction"; view.redraw(); });
+  const chosen = () => { hot.shown = $("shape-show").value !== "target"; goal.shown = $("shape-show").value !== "prediction"; view.redraw(); };
+  $("shape-show").addEventListener("change", chosen);
   view.frame(target);
   heated();
+  chosen();
 }
 
 function showCell() {

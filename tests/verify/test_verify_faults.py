@@ -84,7 +84,7 @@ def test_a_document_that_was_tampered_with(tmp_path):
     """The FreeCAD document: a part moved, one taken out, and one cut short; compared with the STEP files."""
     job = tmp_path / "small.toml"
     job.write_text(
-        '[target]\nsurface = "dome"\n[sheet]\nwidth_mm = 1.5\n[domains]\nsize_um = 420.0\n[solver]\nstarts = 1\n'
+        '[target]\nsurface = "dome"\n[sheet]\nwidth_mm = 1.5\n[domains]\nsize_um = 300.0\n[solver]\nstarts = 1\n'
         '[marks]\ngrating = false\nfields = []\n[prediction]\ncorrect = "off"\n[output]\nmasks = ["gds"]\n'
     )
     out = tmp_path / "out"

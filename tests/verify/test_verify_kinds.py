@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,8 +11,16 @@ import trimesh
 from tampering import errors, grouped, redraw, replaced
 
 from lce_workbench import pipeline
+from lce_workbench.cad.step import write_cad
 from lce_workbench.core import jobfile
-from lce_workbench.verify import verify
+from lce_workbench.core.cell import select
+from lce_workbench.core.channels import ChannelField
+from lce_workbench.core.closed import closed
+from lce_workbench.core.domains import PLATES
+from lce_workbench.divided import read_domains
+from lce_workbench.outputs import read_design
+from lce_workbench.verify import cells, masks, papers, verify
+from lce_workbench.verify.reference import read
 
 JOB = """
 {more}
@@ -83,51 +92,76 @@ engraving_um = 120.0
 """
 
 
-def test_workshop_options(tmp_path, alone):
-    """A job that says something else of every option: its part is found, and only it."""
-    out = made(tmp_path, ["design", "mask", "cad"], dome() + WORKSHOP, "step_window_um = [-100, -100, 100, 100]")
-    for former, other in (
-        ("release_deg = 10.0", "release_deg = 11.0"),
-        ("bead_mm = 1.0", "bead_mm = 1.1"),
-        ("frame_clearance_um = 50.0", "frame_clearance_um = 60.0"),
-        ("engraving_um = 120.0", "engraving_um = 130.0"),
-        ("-100.0, -100.0, 100.0, 100.0", "-100.0, -100.0, 400.0, 100.0"),
-    ):
-        replaced(out / "job.toml", former, other)
-    found = errors(out)
-    wrong = {check: {f.where.rpartition(", ")[2] for f in told} for check, told in found.items()}
-    assert wrong.pop("verify_volume") == {"top_epoxy", "bottom_epoxy", "glue_left", "glue_right", "alignment_frame"}
-    assert wrong.pop("verify_levels") == {"top_glass", "bottom_glass"}
-    assert {"glue_left", "glue_right", "alignment_frame", "top_land"} <= wrong.pop("verify_extent")
-    assert all("domains that are missing or too many" in f.message for f in found["verify_parts"])
-    replaced(out / "job.toml", "chamfer_mm = 0.2", "chamfer_mm = 0.21")
-    text = (out / "job.toml").read_text()
-    assert {"top_glass", "bottom_glass"} <= {f.where.rpartition(", ")[2] for f in errors(out)["verify_levels"]}
-    (out / "job.toml").write_text(re.sub(r"engraving_um = .*", "engraving_um = 0.0", text))
-    found = errors(out)  # letters where none are asked for, and more glass than the chamfer leaves
-    assert {"top_glass", "bottom_glass"} <= {f.where.rpartition(", ")[2] for f in found["verify_volume"]}
+def drawn(folder, more, output=""):
+    """A folder with masks and CAD files, the latter without our own checks of them, which take longest."""
+    out = folder / "out"
+    pipeline.build(jobfile.parse(JOB.format(more=more, output=output)), folder, out, ["design", "mask"])
+    job, path = jobfile.load(out / "job.toml"), out / "design.npz"
+    domains = read_domains(path)
+    cell = closed(read_design(path), domains, job)
+    solids = {plate: list(ChannelField(domains, plate, job.channels)) for plate in PLATES}
+    if job.output.step == "chosen":
+        solids = {plate: [select(part, cell.chosen) for part in parts] for plate, parts in solids.items()}
+    (out / "cad").mkdir()
+    write_cad(cell, solids, job, out / "cad", lambda *_: None)
+    return out
 
 
-def test_a_name_that_was_not_engraved(tmp_path, alone):
-    out = made(tmp_path, ["design", "mask", "cad"], f"{dome()}[plates]\n")
-    replaced(out / "job.toml", "engraving_um = 0.0", "engraving_um = 100.0")
-    found = errors(out)
-    assert [f.where for f in found["verify_engraving"]] == [
-        f"cad/{file}.step, {plate}_glass"
-        for file, plate in (("bottom_plate", "bottom"), ("top_plate", "top"), ("cell", "bottom"), ("cell", "top"))
-    ]
+def held(out):
+    """What the masks hold, and the table's counts."""
+    reference, columns = read(out), papers.table(out / "domains.csv")
+    counts = {plate: columns[f"channels_{plate}"] for plate in PLATES}
+    return {plate: masks.check(out, plate, reference, counts[plate])[1] for plate in PLATES}, counts
+
+
+def test_workshop_options(tmp_path):
+    """A job that says something else of every option: its parts are found, and only they."""
+    out = drawn(tmp_path, dome() + WORKSHOP)
+    facts, counts = held(out)
+    got = {name: cells.read(out, name) for name in cells.readable(out, read(out))}
+
+    def wrong(*changes):
+        text = (out / "job.toml").read_text()
+        for former, other in changes:
+            replaced(out / "job.toml", former, other)
+        found = grouped(cells.check(out, got, read(out), facts, counts)[0])
+        (out / "job.toml").write_text(text)
+        return {check: {f.where.rpartition(", ")[2] for f in told} for check, told in found.items()}
+
+    assert wrong() == {}
+    glasses, beads = {"top_glass", "bottom_glass"}, {"glue_left", "glue_right"}
+    found = wrong(("release_deg = 10.0", "release_deg = 11.0"))
+    assert found["verify_volume"] == {"top_epoxy", "bottom_epoxy"}
+    assert found["verify_extent"] == {"top_land", "bottom_land"}
+    assert beads == wrong(("bead_mm = 1.0", "bead_mm = 1.1"))["verify_volume"]
+    found = wrong(("frame_clearance_um = 50.0", "frame_clearance_um = 60.0"))
+    assert found == {"verify_extent": {"alignment_frame"}, "verify_volume": {"alignment_frame"}}
+    assert wrong(("engraving_um = 120.0", "engraving_um = 130.0")) == {"verify_levels": glasses}
+    assert wrong(("chamfer_mm = 0.2", "chamfer_mm = 0.21"))["verify_levels"] == glasses
+    found = wrong(("engraving_um = 120.0", "engraving_um = 0.0"))
+    assert found == {"verify_levels": glasses, "verify_volume": glasses}
+    plain = [replace(part, volume=part.volume + 1) if "glass" in part.name else part for part in got["cad/cell.step"]]
+    got["cad/cell.step"] = plain  # as if nothing were engraved
+    assert glasses <= wrong()["verify_parts"]
+    got["cad/top_plate.step"] = [part for part in plain if part.name.startswith("top")]
+    assert "top_glass" in wrong()["verify_engraving"]
 
 
 @pytest.mark.parametrize("way", ["mapped", "assembly"])
-def test_all_channels_as_solids_of_which_one_is_dropped(tmp_path, alone, way):
-    size = dome(420).replace("1.5", "2.0")
-    out = made(tmp_path, ["design", "mask", "cad"], size, f'step = "all"\nstep_instances = "{way}"')
-    path = out / "cad" / "channels_top.step"
+def test_all_channels_as_solids_of_which_one_is_dropped(tmp_path, way):
+    out = drawn(tmp_path, dome(), f'step = "all"\nstep_instances = "{way}"')
+    facts, counts = held(out)
+    name, context = "cad/channels_top.step", cells.Context("top", read(out), facts["top"], counts["top"])
+    assert grouped(cells.channel_solids(out, name, None, context)) == {}
     statement = {"mapped": "MAPPED_ITEM", "assembly": "NEXT_ASSEMBLY_USAGE_OCCURRENCE"}[way]
-    lines = path.read_text().splitlines(keepends=True)
+    lines = (out / name).read_text().splitlines(keepends=True)
     gone = [line for line in lines if f"={statement}(" in line][-1]
     text = "".join(line for line in lines if line != gone)
-    path.write_text(re.sub(rf",{gone.partition('=')[0]}(?=[,)])", "", text, count=1))
-    (finding,) = errors(out)["verify_channel_solids"]
-    assert finding.where == "cad/channels_top.step"
+    (out / name).write_text(re.sub(rf",{gone.partition('=')[0]}(?=[,)])", "", text, count=1))
+    (finding,) = grouped(cells.channel_solids(out, name, None, context))["verify_channel_solids"]
     assert finding.value == 1
+    domain = re.search(r"domain_0007[^']*", text)[0]
+    (out / name).write_text(text.replace(domain, "domain_9999"))
+    found = grouped(cells.channel_solids(out, name, None, context))["verify_parts"]
+    assert "domain_9999" in found[0].message
+    assert "first: 7" in found[1].message
