@@ -24,7 +24,8 @@ def designed(folder, *, size=400, steps=4, settings=()):
     """The output folder of a designed saddle of 3 mm; its job stands in ``folder``."""
     job, out = folder / "job.toml", folder / "out" / "saddle"
     job.write_text(JOB.format(size=size, steps=steps))
-    assert main(["design", str(job), "--quiet", "--out", str(out), "--set", *settings]) == 0
+    more = ["--set", *settings] if settings else []
+    assert main(["design", str(job), "--quiet", "--out", str(out), *more]) == 0
     return out
 
 

@@ -117,8 +117,8 @@ def _read(path: Path, again: str) -> Iterator[None]:
     try:
         yield
     except (OSError, ValueError, LookupError, TypeError, EOFError, zipfile.BadZipFile) as fault:
-        said = " ".join(str(fault).split())[:120]
-        msg = f"{path} is missing or damaged ({said}); run `./lce {again}` on its folder again"
+        said = getattr(fault, "strerror", None) or " ".join(str(fault).split())[:120]
+        msg = f"{path.name} is missing or damaged ({said}); run `./lce {again}` on the folder again"
         raise InputError(msg) from fault
 
 
