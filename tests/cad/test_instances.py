@@ -19,6 +19,7 @@ from lce_workbench.cad.reread import channels_in, solids_in, tally
 from lce_workbench.core.cell import domain_name
 from lce_workbench.core.channels import corners
 from lce_workbench.core.domains import PLATES
+from lce_workbench.verify.solids import counted
 
 GAP = job().sheet.thickness
 CASES = [(way, plate) for way in WAYS for plate in PLATES]
@@ -95,7 +96,7 @@ def test_channels_are_counted_without_a_kernel(written, channels, way, plate):
     [("mapped", r"=MAPPED_ITEM\("), ("assembly", r"=NEXT_ASSEMBLY_USAGE_OCCURRENCE\('#\d+','',")],  # a box has no name
 )
 def test_a_lost_channel_is_seen(written, channels, tmp_path, monkeypatch, way, statement):
-    """By the count of statements, and by the kernel."""
+    """By the count of statements, by that of `verify`, which is made anew, and by the kernel."""
     monkeypatch.setattr("lce_workbench.cad.reread.CHUNK", 999)  # statements across the ends of chunks count once
     path = written / way / "channels_top.step"
     assert channels_in(path, way) == len(channels["top"])
@@ -107,6 +108,7 @@ def test_a_lost_channel_is_seen(written, channels, tmp_path, monkeypatch, way, s
         (text[:start] + text[end:]).replace(f",{number})", ")").replace(f",{number},", ",")
     )
     assert channels_in(tmp_path / "lost.step", way) == len(channels["top"]) - 1
+    assert [counted(at)[0] for at in (path, tmp_path / "lost.step")] == [len(channels["top"]), len(channels["top"]) - 1]
     if way == "mapped":  # the box of a lost component may stay behind as a solid, so kernels cannot be trusted
         assert len(solids_in(tmp_path / "lost.step")) == len(channels["top"]) - 1
 
