@@ -108,6 +108,9 @@ class Review:
 
 def _columns(table: str) -> dict[str, Floats]:
     names, *rows = csv.reader(table.splitlines())
+    if any(len(row) != len(names) for row in rows):
+        msg = f"a row lacks some of the {len(names)} columns"
+        raise ValueError(msg)
     return dict(zip(names, np.array(rows, dtype=np.float64).T, strict=True))
 
 

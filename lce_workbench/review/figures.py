@@ -203,7 +203,12 @@ FIGURES: dict[str, Plan] = {
     "stretches": Plan("Stretches", "Errors of the stretches, by area of the sheet.", _stretches, axes=2),
     "angles": Plan("Angles", "Director and twist, by area of the sheet.", _angles, axes=2),
     "jumps": Plan("Jumps between neighbours", "Where the director turns much, the film has to even it out.", _jumps),
-    "energy": Plan("Energy history", "The winner's energy on the finest mesh.", _energy),
+    "energy": Plan(
+        "Energy history",
+        "The winner's energy on the finest mesh.",
+        _energy,
+        wanted=lambda review: bool(np.any(review.design.flattening.energy > 0)),
+    ),
     "starts": Plan(
         "Starts that competed",
         "The lowest bar wins: error of the stretches times the share of bending that twist cannot reach. A symmetric "

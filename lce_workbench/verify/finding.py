@@ -34,7 +34,7 @@ def reading(*more: type[Exception]) -> Iterator[None]:
     try:
         yield
     except (*DAMAGES, *more) as fault:
-        said = " ".join(str(fault).split())[:160] or type(fault).__name__
+        said = getattr(fault, "strerror", None) or " ".join(str(fault).split())[:160] or type(fault).__name__
         msg = f"cannot be read ({said}); write it again"
         raise Unreadable(msg) from fault
 

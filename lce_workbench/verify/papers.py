@@ -114,6 +114,10 @@ def table(path: Path) -> dict[str, Floats]:
     with reading():
         with path.open(encoding="utf-8", newline="") as file:
             rows = list(csv.reader(file))
+        for k, row in enumerate(rows):
+            if len(row) != len(rows[0]):
+                msg = f"row {k} has {len(row)} of {len(rows[0])} columns"
+                raise ValueError(msg)
         values = np.array([[float(cell) for cell in row] for row in rows[1:]]).T
         found = dict(zip(rows[0], values, strict=True))
     lacking = [name for name in COLUMNS if name not in found]
