@@ -19,7 +19,19 @@ from lce_solver.geometry import area_vectors, face_areas
 from lce_solver.metric import Stop
 from lce_solver.plane import long_side_along_x, rectangle_angles, turn
 from lce_solver.twist import bending_left, second_form
-from lce_solver.types import Design, Finding, Flattening, Floats, Ints, Material, Progress, Surface, line_angle, silent
+from lce_solver.types import (
+    Design,
+    Finding,
+    Flattening,
+    Floats,
+    Ints,
+    Material,
+    Progress,
+    Status,
+    Surface,
+    line_angle,
+    silent,
+)
 
 Resample = Callable[[float], Surface]
 
@@ -88,13 +100,14 @@ def designs(
     stop = Stop(tolerance, max_iterations)
     finalists, competed = compete(surface, material, starts, stop, progress, smoothing=smoothing)
     for one in _distinct(finalists):
-        mesh, made, flat = surface, one, steer(surface, one.flat, material, stop, smoothing=smoothing)
-        factor = edge / flat_edge(flat.uv, surface.faces, width) if resample else 1.0
-        if resample and abs(factor - 1) > OFF:
-            mesh = resample(factor)
-            made = transferred(replace(one, flat=flat), surface, mesh, material, stop, smoothing=smoothing)
-            flat = steer(mesh, made.flat, material, stop, smoothing=smoothing)
-        plan = _laid(mesh, flat, material, width, thickness)
+        steered = replace(one, flat=steer(surface, one.flat, material, stop, smoothing=smoothing))
+        mesh, made = surface, steered
+        if resample and steered.flat.status is Status.CONVERGED:
+            factor = edge / flat_edge(steered.flat.uv, surface.faces, width)
+            mesh, made = _resized(
+                surface, steered, material, stop, factor=factor, resample=resample, smoothing=smoothing
+            )
+        plan = _laid(mesh, made.flat, material, width, thickness)
         records = tuple(
             replace(made.start, winner=True) if start.angle == one.start.angle else start for start in competed
         )
@@ -109,6 +122,26 @@ def designs(
             twist_limit=twist_limit,
         )
         yield replace(plan, findings=measured(plan, form, twist_limit))
+
+
+def _resized(
+    surface: Surface,
+    one: Finalist,
+    material: Material,
+    stop: Stop,
+    *,
+    factor: float,
+    resample: Resample,
+    smoothing: float,
+) -> tuple[Surface, Finalist]:
+    """The mesh with edges ``factor`` times as long and the finalist on it; both as they were if that is close to 1."""
+    if abs(factor - 1) <= OFF:
+        return surface, one
+    mesh = resample(factor)
+    moved = transferred(one, surface, mesh, material, stop, smoothing=smoothing)
+    if moved.flat.status is not Status.CONVERGED:  # rather domains of another size than a sheet with a fold
+        return surface, one
+    return mesh, replace(moved, flat=steer(mesh, moved.flat, material, stop, smoothing=smoothing))
 
 
 def _distinct(finalists: tuple[Finalist, ...]) -> list[Finalist]:
