@@ -64,7 +64,9 @@ def _mean_value_laplacian(surface: Surface) -> sparse.csr_array:
     to_next, to_last = np.roll(corner, -1, axis=1) - corner, np.roll(corner, 1, axis=1) - corner
     next_length, last_length = np.linalg.norm(to_next, axis=2), np.linalg.norm(to_last, axis=2)
     cosine = np.einsum("fki,fki->fk", to_next, to_last)
-    tangent = 2 * face_areas(surface)[:, None] / (next_length * last_length + cosine)  # of half the corner's angle
+    sine, product = 2 * face_areas(surface)[:, None], next_length * last_length
+    acute, obtuse = sine / (product + np.abs(cosine)), (product + np.abs(cosine)) / sine  # neither loses digits
+    tangent = np.where(cosine > 0, acute, obtuse)  # of half the corner's angle
     here, there = np.tile(surface.faces, 2), np.hstack([np.roll(surface.faces, s, axis=1) for s in (-1, 1)])
     weight = np.hstack([tangent / next_length, tangent / last_length])
     entry, n = (here.ravel(), there.ravel()), len(surface.vertices)

@@ -39,7 +39,7 @@ from lce_solver.types import Material, Status, Surface
 from lce_solver.wirtinger import stretched
 from lce_workbench import stages
 from lce_workbench.core import target
-from lce_workbench.core.job import Job, Target
+from lce_workbench.core.job import Job, MaterialSpec, Target
 
 PEER = Material(0.58, float(-np.log(1.08) / np.log(0.58)))
 """The stretches 0.58 and 1.08 of the public comparison."""
@@ -229,7 +229,8 @@ def solved(surface, pose, path):
     """Design of a scan that lies somewhere, its target turned back around its middle, and what the sheet heats into."""
     rotation = Rotation.random(random_state=pose).as_matrix() if pose else np.eye(3)
     write_obj(path, surface.vertices @ rotation.T + pose, surface.faces)
-    job = replace(Job(), target=Target(mesh=str(path)), domains=replace(Job().domains, size_um=500.0))
+    spec = MaterialSpec(preset="rm82-pdt-1to1")
+    job = replace(Job(), target=Target(mesh=str(path)), material=spec, domains=replace(Job().domains, size_um=500.0))
     plan = next(stages.solved(stages.Run(path.parent, job, path.parent))[0])
     points, weights = plan.surface.vertices, vertex_areas(plan.surface.vertices, plan.surface.faces)
     back = Surface((points - np.average(points, axis=0, weights=weights)) @ rotation, plan.surface.faces)

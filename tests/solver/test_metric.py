@@ -13,7 +13,7 @@ from lce_solver.geometry import face_areas
 from lce_solver.metric import Stop, flatten, lay_flat, local_global
 from lce_solver.plane import convex_map
 from lce_solver.surfaces import SURFACES
-from lce_solver.types import Material, Start, Status
+from lce_solver.types import Material, Start, Status, Surface
 from lce_solver.wirtinger import director, energy, operator, stretched
 
 STRETCHES = (LCE.along, LCE.across)
@@ -223,6 +223,14 @@ def test_touching_outline_counts_as_crossing():
 def test_first_map_is_valid(name):
     surface = SURFACES[name](0.08)
     assert len(judge.flipped(convex_map(surface), surface.faces)) == 0
+
+
+def test_first_map_takes_a_corner_of_nearly_180_degrees():
+    points = np.array([(0, 0, 0), (2, 0, 0), (1, 1, 0), (1, -1, 0), (1, 1e-9, 0)], float)
+    faces = np.array([(0, 3, 1), (0, 1, 4), (0, 4, 2), (4, 1, 2)])
+    uv = convex_map(Surface(points, faces))
+    assert len(judge.flipped(uv, faces)) == 0
+    assert uv[4] == pytest.approx(uv[[0, 1]].mean(axis=0), abs=1e-6)  # on the edge that it all but touches
 
 
 def test_best_start_wins():
