@@ -14,6 +14,8 @@ from lce_solver.types import Floats, Ints, Surface
 
 Complexes = NDArray[np.complex128]
 
+SMALL = 1e-6
+"""Shorter edges, in mean edges, count as that long."""
 SAME = 1e-6
 """Rectangles whose areas differ by less are equally small."""
 
@@ -62,13 +64,13 @@ def _mean_value_laplacian(surface: Surface) -> sparse.csr_array:
     """(n_v, n_v) row sums zero, entries off the diagonal <= 0: ``-(tan(left/2) + tan(right/2)) / length``."""
     corner = surface.vertices[surface.faces]
     to_next, to_last = np.roll(corner, -1, axis=1) - corner, np.roll(corner, 1, axis=1) - corner
-    next_length, last_length = np.linalg.norm(to_next, axis=2), np.linalg.norm(to_last, axis=2)
+    least = SMALL * np.sqrt(np.mean(np.einsum("fki,fki->fk", to_next, to_next)))  # where a hole has no area, say
+    next_length, last_length = (np.maximum(np.linalg.norm(v, axis=2), least) for v in (to_next, to_last))
     cosine = np.einsum("fki,fki->fk", to_next, to_last)
-    sine, product = 2 * face_areas(surface)[:, None], next_length * last_length
-    acute, obtuse = sine / (product + np.abs(cosine)), (product + np.abs(cosine)) / sine  # neither loses digits
-    tangent = np.where(cosine > 0, acute, obtuse)  # of half the corner's angle
-    here, there = np.tile(surface.faces, 2), np.hstack([np.roll(surface.faces, s, axis=1) for s in (-1, 1)])
+    sine, sum_ = np.maximum(2 * face_areas(surface)[:, None], least**2), next_length * last_length + np.abs(cosine)
+    tangent = np.where(cosine > 0, sine / sum_, sum_ / sine)  # of half the corner's angle; neither loses digits
     weight = np.hstack([tangent / next_length, tangent / last_length])
+    here, there = np.tile(surface.faces, 2), np.hstack([np.roll(surface.faces, s, axis=1) for s in (-1, 1)])
     entry, n = (here.ravel(), there.ravel()), len(surface.vertices)
     weights = sparse.csr_array((weight.ravel(), entry), shape=(n, n))
     return (sparse.diags(weights @ np.ones(n)) - weights).tocsr()
