@@ -21,6 +21,7 @@ from scipy.spatial.transform import Rotation
 from targets import LCE, cap, line_difference
 
 from lce_solver import judge
+from lce_solver.choice import arriving
 from lce_solver.compare import align, vertex_areas
 from lce_solver.contest import compete
 from lce_solver.descent import start
@@ -231,7 +232,8 @@ def solved(surface, pose, path):
     write_obj(path, surface.vertices @ rotation.T + pose, surface.faces)
     spec = MaterialSpec(preset="rm82-pdt-1to1")
     job = replace(Job(), target=Target(mesh=str(path)), material=spec, domains=replace(Job().domains, size_um=500.0))
-    plan = next(stages.solved(stages.Run(path.parent, job, path.parent))[0])
+    plans, _ = stages.solved(stages.Run(path.parent, job, path.parent))
+    plan, _ = arriving(plans, "full", job.sheet.twist_limit)
     points, weights = plan.surface.vertices, vertex_areas(plan.surface.vertices, plan.surface.faces)
     back = Surface((points - np.average(points, axis=0, weights=weights)) @ rotation, plan.surface.faces)
     return plan, back, predict(film_of(plan), seed=1).vertices
