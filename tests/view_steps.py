@@ -66,6 +66,7 @@ def looks(folder):
     found["solids"] = solids(cell)
     found["panel"] = panel(cell)
     found["follows"] = follows(cell)
+    found["reopened"] = reopened(cell)
     found["console"] = console()
     FreeCAD.closeDocument(doc.Name)
     pump(0.2)
@@ -318,6 +319,28 @@ def follows(cell):
     former = scene.of(cell).picture.scale.high
     session.set_parameters(cell, {"sheet.gap_um": 150.0})
     return former, scene.of(cell).picture.scale.high, float(np.degrees(abs(scene.of(cell).shown().design.dtheta).max()))
+
+
+def reopened(cell):
+    """The view is closed while the cell is apart, and another one is used."""
+    import FreeCADGui
+
+    from lce_workbench.gui import scene, table
+    from lce_workbench.gui.qt import QtWidgets
+
+    scene.explode(cell, True)
+    apart = heights(cell)["top_glass"]
+    area = FreeCADGui.getMainWindow().findChild(QtWidgets.QMdiArea)
+    first = area.subWindowList()[0]
+    FreeCADGui.runCommand("Std_ViewCreate", 0)
+    pump(0.2)
+    first.close()
+    pump(0.2)
+    found = [heights(cell)["top_glass"] == apart]
+    scene.explode(cell, True)
+    found.append(heights(cell)["top_glass"] == apart)
+    scene.mark(cell, (3,))
+    return [*found, list(table.TABLES[0].chosen()), scene.of(cell).picking]
 
 
 def saved_as(doc, folder, name):

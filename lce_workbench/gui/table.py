@@ -14,7 +14,7 @@ from lce_workbench.app import works
 from lce_workbench.core.channels import ChannelField
 from lce_workbench.core.domains import PLATES
 from lce_workbench.export.table import columns
-from lce_workbench.gui import scene
+from lce_workbench.gui import scene, stage
 from lce_workbench.gui.commands import once, path, refuse
 from lce_workbench.gui.qt import QtCore, QtWidgets, tr
 
@@ -103,7 +103,7 @@ class Table(QtWidgets.QDockWidget):
     def __init__(self, parent: Any) -> None:
         super().__init__(tr("Domains"), parent)
         self.setObjectName(DOCK)
-        self.shown: scene.Scene | None = None
+        self.shown: stage.Scene | None = None
         self.domains: Any = None
         self.spec: Any = None
         self.following = False
@@ -127,7 +127,7 @@ class Table(QtWidgets.QDockWidget):
         column.addWidget(self.button)
         self.setWidget(inside)
         self.visibilityChanged.connect(self.listen)
-        scene.WATCHERS.append(self.follow)
+        stage.WATCHERS.append(self.follow)
 
     def take(self, cell: Any) -> None:
         """Show the domains of a cell, and what is marked of them."""
@@ -141,10 +141,11 @@ class Table(QtWidgets.QDockWidget):
         if self.shown is not None:
             self.shown.picking = visible
 
-    def follow(self, shown: scene.Scene) -> None:
+    def follow(self, shown: stage.Scene) -> None:
         """Show what the scene has marked, and its domains when they are others."""
-        if shown is not self.shown:
+        if self.shown is None or shown.id != self.shown.id:
             return
+        self.shown = shown
         if shown.gone:
             self.shown = None
             self.model.take({"domain": np.arange(0)})
@@ -170,7 +171,8 @@ class Table(QtWidgets.QDockWidget):
         self.view.selectionModel().select(selection, QtCore.QItemSelectionModel.ClearAndSelect)
         self.following = False
         if domains:
-            self.view.scrollTo(self.model.index(self.model.rows(domains[:1])[0], 0))
+            first = self.model.index(self.model.rows(domains[:1])[0], 0)
+            self.view.scrollTo(first, QtWidgets.QAbstractItemView.PositionAtCenter)
 
     def chosen(self) -> tuple[int, ...]:
         """The domains whose rows are selected."""

@@ -16,7 +16,7 @@ from freecad_call import FreeCAD  # noqa: E402
 from processes import display  # noqa: E402
 
 PICTURES = ROOT / "docs" / "workbench"
-COLOURS = 96
+COLOURS = 256
 
 if __name__ == "__main__":
     with (

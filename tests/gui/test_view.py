@@ -161,6 +161,10 @@ def test_a_picture_follows_the_parameters(seen):
     assert now == expected != former
 
 
+def test_another_view_takes_over_when_the_first_is_closed(seen):
+    assert seen["reopened"] == [True, True, [3], True]
+
+
 def test_every_command_shows_its_line(seen):
     said = seen["console"].replace("\n", "")
     for line in (
