@@ -19,7 +19,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from lce_solver.compare import align, vertex_areas
+from lce_solver.compare import align, residual_strain, vertex_areas
 from lce_solver.shell import Film, film_of, predict, settle
 from lce_solver.shell_energy import bent_form, bias, energy, hessian, pattern_forces
 from lce_solver.twist import twist
@@ -48,6 +48,10 @@ BIAS = 0.1
 bending energies of a sheet without twist; doubled each time the sheet still ends in the mirror image."""
 THINNER = 10.0
 """A film as many times thinner tells whether stiffness keeps a sheet from its target."""
+CAPPED = 0.05
+"""Share of the triangles with the largest twist allowed from which on the limit is what keeps a sheet away."""
+MISSED = 0.01
+"""Area rms of the stretches' errors at the target from which on the metric does."""
 SEED = 1
 """Of the imperfection."""
 LARGEST = 20_000
@@ -307,9 +311,17 @@ def _obstacle(plan: Design, best: Try, limit: float) -> str:
     there, thinner = (_away(plan, settle(one, target)) for one in (film, thin))
     if there < LOST:
         return "it would stay at the target, but from flat it takes another shape with the same metric"
+    capped = float(np.mean(np.abs(film.dtheta) > limit * (1 - 1e-6)))
+    if capped > CAPPED:
+        return (
+            f"its twist is cut off at {np.rad2deg(limit):.0f} deg in {capped:.0%} of the triangles: "
+            "raise sheet.twist_limit_deg, make the sheet wider or the film thinner"
+        )
     if thinner < there / 2:
         return "its stiffness against bending keeps it away: make the sheet wider or the film thinner"
-    return "its director misses the target's metric: use smaller domains or choose lambda further from 1"
+    if residual_strain(plan.uv, plan.surface.faces, film.theta, film.material, target) > MISSED:
+        return "its director misses the target's metric: use smaller domains or choose lambda further from 1"
+    return "many shapes have this metric, and the twist carries too little of the bending to choose among them"
 
 
 def _away(plan: Design, found: Prediction) -> float:

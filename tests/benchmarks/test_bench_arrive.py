@@ -5,7 +5,7 @@ LCE_MESHES=FOLDER python -m pytest tests/benchmarks/test_bench_arrive.py -o addo
 
 The time is that of the correction; the distances are in the record, in % of the diagonal. Shipped targets are heated
 from ten imperfections of 0.02 thicknesses; ``LCE_MESHES`` may name a folder with further meshes; `deep.DEEP` are
-targets deeper than a hemisphere or with an overhang.
+targets deeper than a hemisphere or with an overhang, here on about 1000 triangles of 0.8 mm.
 """
 
 import os
@@ -13,13 +13,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-import trimesh
 from deep import DEEP
 
 from lce_solver.arrive import arrive
 from lce_solver.compare import compare
 from lce_solver.design import design
-from lce_solver.shell import film_of, predict, settle
+from lce_solver.shell import film_of, predict
+from lce_solver.types import Material
 from lce_workbench.core import jobfile, material, target
 from lce_workbench.core.job import Job, Target
 
@@ -27,8 +27,10 @@ SHIPPED = {"face": 0.3, "dome": 0.1, "saddle": 0.3, "leaf": 0.3}
 """Largest rms distance from the target [% of the diagonal]."""
 MESHES = {"face.obj": 1.0, "hemisphere.obj": 0.15, "saddle.obj": 0.08}
 FOLDER = Path(os.environ.get("LCE_MESHES", ""))
-REACHED = 2.0
-"""A deep target that ends further away must say why [% of the diagonal]."""
+REACHED = {"mushroom": 0.6, "stairs": 0.6, "finger": 0.5, "bell": 0.5, "cap 120": 0.5, "scroll": 0.6}
+"""Deep targets with their lambda; they end within 2 % of their targets."""
+MISSED = {"scroll": "its twist is cut off"}
+"""What is said of those that do not."""
 
 
 def corrected(benchmark, job, base):
@@ -63,21 +65,15 @@ def test_meshes(benchmark, name):
     assert not any(one.mirrored for one in found)
 
 
-@pytest.mark.parametrize("lambda_", [0.6, 0.5])
-@pytest.mark.parametrize("name", DEEP)
-def test_deep(benchmark, name, lambda_, tmp_path):
-    surface = DEEP[name](0.02)
-    trimesh.Trimesh(surface.vertices, surface.faces, process=False).export(tmp_path / "target.obj")
-    job = default(mesh="target.obj")
-    job = replace(job, material=replace(job.material, preset="", lambda_=lambda_, nu=0.5))
-    made, said = corrected(benchmark, job, tmp_path)
-    found = predict(film_of(made), seed=2)
-    judged = compare(made, found, settle(film_of(made), made.surface.vertices))
-    facts = {one.check: one.value for one in made.findings}
-    benchmark.extra_info.update(
-        rms_pct=judged.rms_pct,
-        verdict=judged.verdict.name,
-        stretch_rms=facts["stretch_rms"],
-        length_bound=facts["length_bound"],
-    )
-    assert judged.rms_pct <= REACHED or said.severity == "warning"
+@pytest.mark.parametrize(("name", "lambda_"), REACHED.items())
+def test_deep(benchmark, name, lambda_):
+    limit = Job().sheet.twist_limit
+    plan = design(DEEP[name](0.07), Material(lambda_, 0.5), 20.0, 0.1, twist_limit=limit)
+    made, said = benchmark.pedantic(arrive, (plan, "full", limit), rounds=1)
+    judged = compare(made, predict(film_of(made), seed=2))
+    benchmark.extra_info.update(triangles=len(made.theta), rms_pct=judged.rms_pct, said=said.message)
+    if name in MISSED:
+        assert said.severity == "warning"
+        assert MISSED[name] in said.message
+    else:
+        assert judged.rms_pct <= 2.0

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from deep import DEEP
 from flatsheets import hot, random_state
 from targets import LCE
 
@@ -108,6 +109,15 @@ def test_a_film_too_thick_for_its_target_is_told():
     _, said = arrive(plan, "full", LIMIT)
     assert said.severity is Severity.WARNING
     assert "its director misses" in said.message or "make the sheet wider" in said.message
+
+
+def test_a_twist_that_the_limit_cuts_off_is_told():
+    """Only twist can roll up a rectangle, and here it may not be large enough."""
+    limit = np.deg2rad(1.0)
+    plan = design(DEEP["scroll"](0.15), LCE, 20.0, 0.1, starts=1, twist_limit=limit)
+    _, said = arrive(plan, "full", limit)
+    assert said.severity is Severity.WARNING
+    assert "its twist is cut off at 1 deg" in said.message
 
 
 def test_large_sheets_are_left_alone(dome, monkeypatch):
