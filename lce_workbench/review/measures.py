@@ -10,6 +10,7 @@ from lce_solver.geometry import face_areas
 from lce_solver.twist import in_director_frame, second_form, twisted_form
 from lce_solver.types import Design, Floats, Ints, line_angle
 from lce_workbench.core.align import CONFIDENCE, Readings, fit
+from lce_workbench.core.borders import borders
 from lce_workbench.core.domains import Domains
 from lce_workbench.core.frame import Frame
 from lce_workbench.core.job import ChannelSpec, Job
@@ -56,19 +57,11 @@ def sides(domains: Domains) -> tuple[Ints, Floats, Ints]:
     return corners, length, np.concatenate(owner)
 
 
-def borders(domains: Domains) -> tuple[Ints, Floats]:
-    """Sides that two domains share: which domains (n, 2), and the length (n,) [mm]."""
-    corners, length, owner = sides(domains)
-    order = np.lexsort(corners.T)
-    twins = np.flatnonzero(np.all(corners[order[1:]] == corners[order[:-1]], axis=1))
-    return np.stack([owner[order[twins]], owner[order[twins + 1]]], axis=1), length[order[twins]]
-
-
 def jumps(domains: Domains) -> Floats:
-    """(n_i,) how far the director turns across each border between two domains [rad]."""
-    pairs, _ = borders(domains)
+    """(n_i,) how far the director turns across each border between two domains [rad]; 0 where there is but one."""
+    pairs = borders(domains).pair
     turn = line_angle(np.subtract(*domains.theta[pairs.T]))
-    return np.minimum(turn, np.pi - turn)
+    return np.minimum(turn, np.pi - turn) if len(pairs) else np.zeros(1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,5 +153,5 @@ def budget(frame: Frame, domains: Domains, job: Job) -> Budget:
         lever=float(np.linalg.norm(frame.sheet.ring, axis=1).max()),
         scale=float(halves[3]),
         tolerance=tolerance,
-        borders=float(borders(domains)[1].sum() / np.abs(domains.area).sum()),
+        borders=float(borders(domains).length.sum() / np.abs(domains.area).sum()),
     )

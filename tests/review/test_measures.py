@@ -11,7 +11,8 @@ from lce_solver.twist import second_form, twist
 from lce_solver.types import Surface
 from lce_workbench.core.domains import partition
 from lce_workbench.core.frame import arrange
-from lce_workbench.core.job import ChannelSpec, Job
+from lce_workbench.core.job import ChannelSpec, DomainSpec, Job
+from lce_workbench.core.partition import divide
 from lce_workbench.review.measures import anchoring, bending, budget, jumps, transmission
 
 TRIANGLE = [[0, 0], [1, 0], [0, 1]]
@@ -94,3 +95,21 @@ def test_bending_of_a_twisted_saddle_is_all_shear_and_all_prescribed():
     assert found.rms(found.prescribed) == pytest.approx(shear, rel=1e-9)
     assert shear == pytest.approx(0.03 / (0.6 * 0.6**-0.5), rel=0.01)
     assert found.rms(found.wanted[:, 0, 0]) < 0.02 * shear
+
+
+def length(ring):
+    """Of a closed line."""
+    return np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1).sum()
+
+
+@pytest.mark.parametrize("kind", ["triangles", "hexagons", "voronoi"])
+def test_every_kind_of_domains_has_borders_and_one_domain_has_none(kind):
+    """Each inner border counts once: what is left of all sides is the rim."""
+    plan = design()
+    domains, _ = divide(plan, Job(domains=DomainSpec(kind=kind, size_um=300.0)))
+    around = sum(length(domains.ring(k)) for k in range(len(domains)))
+    rim = length(domains.outline)
+    share = budget(arrange(plan.uv, Job()), domains, Job()).borders * np.abs(domains.area).sum()
+    assert share == pytest.approx((around - rim) / 2, rel=0.03)
+    assert len(jumps(domains)) > len(domains)
+    assert jumps(single(TRIANGLE, 0.3)).tolist() == [0.0]
