@@ -48,6 +48,7 @@ def looks(folder):
     from lce_workbench.gui import scene, table
 
     view = scene.of(cell).view
+    view.setAnimationEnabled(False)
     view.viewIsometric()
     view.fitAll()
     before, saved = fingerprint(doc), saved_as(doc, folder, "before")

@@ -17,7 +17,8 @@ MARGIN = 1.15
 
 ABOVE = (0.0, 0.0, 0.0, 1.0)
 ASLANT = (0.42, 0.0, 0.0, 0.9075)
-"""How the camera is turned: from above, and from the front and above."""
+FRONT = (0.7071068, 0.0, 0.0, 0.7071068)
+"""How the camera is turned: from above, from the front and above, from the front."""
 
 
 def view_of(doc: Any) -> Any:
@@ -33,6 +34,11 @@ def view_of(doc: Any) -> Any:
         msg = f"{doc.Label} has no 3D view; open one with Window, New window"
         raise InputError(msg)
     return views[0]
+
+
+def turn(view: Any, orientation: tuple[float, float, float, float]) -> None:
+    """Turn the camera at once: FreeCAD's own commands move it bit by bit, and where it is meanwhile would count."""
+    view.getCameraNode().orientation = orientation
 
 
 def frame(view: Any, points: Floats) -> None:

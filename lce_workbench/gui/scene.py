@@ -21,7 +21,7 @@ from lce_solver.errors import InputError, LceError
 from lce_workbench.app import cells, works
 from lce_workbench.app.objects import prisms_around
 from lce_workbench.app.pictures import PICTURES
-from lce_workbench.gui.camera import ABOVE, ASLANT, frame, look_at, view_of
+from lce_workbench.gui.camera import ABOVE, ASLANT, FRONT, frame, look_at, turn, view_of
 from lce_workbench.gui.stage import WATCHERS, Scene
 
 GAPS = 25.0
@@ -45,7 +45,7 @@ def show(cell: Any, name: str) -> None:
     scene.name, former = name, scene.name
     scene.draw()
     if name:
-        scene.view.setCameraOrientation(ABOVE if name.startswith("channels") else ASLANT)
+        turn(scene.view, ABOVE if name.startswith("channels") else ASLANT)
         frame(scene.view, np.concatenate([skin.points for skin in scene.skins()]))
     elif former and scene.camera:
         scene.view.setCamera(scene.camera)
@@ -79,7 +79,7 @@ def section(cell: Any, y: float | None = 0.0) -> None:
     if y is None or scene.exploded:
         scene.view.fitAll()
         return
-    scene.view.viewFront()
+    turn(scene.view, FRONT)
     look_at(scene.view, (window_place(cell)[0], y, 0.0), GAPS * scene.shown().job.sheet.thickness)
 
 
