@@ -341,7 +341,7 @@ def _design(data: Mapping[str, Any]) -> Design:
         thickness=float(data["thickness"]),
         flattening=flat,
         bending_left=float(data["bending_left"]),
-        starts=tuple(_start(row) for row in zip(*(data.get(f"start_{f.name}", ()) for f in STARTS), strict=True)),
+        starts=_starts(data),
     )
     _require_sound(plan)
     return plan
@@ -362,9 +362,11 @@ def _require_sound(plan: Design) -> None:
         raise ValueError(msg)
 
 
-def _start(row: Sequence[Any]) -> Start:
-    values = {field.name: value.item() for field, value in zip(STARTS, row, strict=True)}
-    return Start(**{**values, "status": Status[values["status"]]})
+def _starts(data: Mapping[str, Any]) -> tuple[Start, ...]:
+    """The record of the starts; what a former version did not write has its default."""
+    columns = {field.name: data[f"start_{field.name}"] for field in STARTS if f"start_{field.name}" in data}
+    rows = [dict(zip(columns, row, strict=True)) for row in zip(*(c.tolist() for c in columns.values()), strict=True)]
+    return tuple(Start(**{**row, "status": Status[row["status"]]}) for row in rows)
 
 
 def _ints(array: Any) -> Ints:

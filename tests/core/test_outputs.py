@@ -235,6 +235,15 @@ def test_the_design_comes_back_with_the_starts_that_competed(tmp_path):
         assert read_design(tmp_path / "design.npz").starts == competed
 
 
+def test_a_design_of_a_former_version_lacks_nothing_but_what_was_not_known_then(tmp_path):
+    start = Start(0.5, Status.CONVERGED, 0.2, 0.9, flipped=0, crossings=0, winner=True, heated_pct=0.1)
+    write_design(replace(design(), starts=(start,)), tmp_path / "design.npz")
+    with np.load(tmp_path / "design.npz") as data:
+        kept = {name: data[name] for name in data.files if name not in {"start_winner", "start_heated_pct"}}
+    np.savez(tmp_path / "design.npz", **kept)
+    assert read_design(tmp_path / "design.npz").starts == (replace(start, winner=False, heated_pct=np.inf),)
+
+
 @pytest.mark.parametrize("fault", FOREIGN)
 def test_what_is_no_design_is_told(tmp_path, fault):
     path = tmp_path / "design.npz"
