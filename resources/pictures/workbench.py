@@ -25,9 +25,11 @@ if __name__ == "__main__":
         tempfile.TemporaryDirectory() as folder,
         subprocess.Popen(["openbox"], env={"DISPLAY": screen, "HOME": folder}) as manager,
     ):
-        freecad = FreeCAD(Path(folder) / "home")
-        freecad.window(screen, gui_steps.shown, mesh=str(Path(sys.argv[1]).resolve()), pictures=str(PICTURES))
-        manager.terminate()
+        try:
+            freecad = FreeCAD(Path(folder) / "home")
+            freecad.window(screen, gui_steps.shown, mesh=str(Path(sys.argv[1]).resolve()), pictures=str(PICTURES))
+        finally:
+            manager.terminate()
     for picture in sorted(PICTURES.glob("*.png")):
         subprocess.run(
             ["convert", picture, "-colors", str(COLOURS), "-define", "png:compression-level=9", picture], check=True
