@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import signal
 import sys
 import time
@@ -351,7 +352,9 @@ def _progress(args: argparse.Namespace) -> tuple[Progress, Callable[[], None]]:
 
 def _json_line(stage: str, fraction: float) -> None:
     with suppress(OSError):  # nobody listens any more: the work goes on
-        print(json.dumps({"stage": stage, "fraction": round(fraction, 4)}), flush=True)
+        energy = getattr(stage, "energy", math.nan)
+        told = {"energy": energy} if math.isfinite(energy) else {}
+        print(json.dumps({"stage": stage, "fraction": round(fraction, 4), **told}), flush=True)
 
 
 SOON = 3.0

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lce_solver.errors import EnvironmentFault, LceError
-from lce_solver.types import Progress, silent
+from lce_solver.types import Progress, Stage, silent
 from lce_workbench import ROOT
 
 
@@ -99,7 +99,8 @@ def told(line: str, progress: Progress) -> None:
     """Pass one line of progress on; other lines are none."""
     try:
         record = json.loads(line)
-        progress(str(record["stage"]), float(record["fraction"]))
+        stage, energy = str(record["stage"]), record.get("energy")
+        progress(stage if energy is None else Stage(stage, float(energy)), float(record["fraction"]))
     except (ValueError, KeyError, TypeError):
         return
 

@@ -251,3 +251,24 @@ def clipped(rings: Sequence[Floats], low: Point, high: Point) -> list[Floats]:
         if np.all(b > a):
             found.append(rectangle(*a, *b))
     return found
+
+
+def zigzag(x: float, low: float, high: float) -> Stroke:
+    """The zigzag of a broken edge."""
+    d = (high - low) / 40
+    steps = [(0, -22), (0, -2), (-2, -1), (2, 1), (0, 2), (0, 22)]
+    return Stroke(np.array([x, (low + high) / 2]) + d * np.array(steps), "thin", closed=False)
+
+
+def extremes(sheet: Floats) -> list[Floats]:
+    """The edges (2, 2) of an outline that begin at its left-, right-, lower- and uppermost vertex.
+
+    Dimensions hold there; TechDraw need not project the whole outline, which takes it long.
+    """
+    order = (sheet[:, 0].argmin(), sheet[:, 0].argmax(), sheet[:, 1].argmin(), sheet[:, 1].argmax())
+    return [sheet[[k, (k + 1) % len(sheet)]] for k in order]
+
+
+def point(at: Floats) -> Point:
+    """A point (2,) as plain numbers."""
+    return float(at[0]), float(at[1])

@@ -51,7 +51,7 @@ def new_cell(doc: Any, settings: Settings, source: Any = None) -> Any:
         objects = cells.sections(cell)
         objects["target"].Source = source if isinstance(source, tuple) else (source, "")
         objects["target"].Sizes = [objects["sheet"], objects["domains"]] if isinstance(source, tuple) else []
-    _recompute(cell)
+    cell.Document.recompute()
     return cell
 
 
@@ -107,7 +107,7 @@ def set_parameters(cell: Any, settings: Settings) -> None:
                 prop.write(obj, getattr(part, prop.field))
                 if FILES.get(section) == key:
                     _keep(obj, getattr(part, prop.field))
-    _recompute(cell)
+    cell.Document.recompute()
 
 
 def _require_files(settings: Settings) -> None:
@@ -141,7 +141,7 @@ def design(cell: Any) -> None:
     now = job(cell)
     work = child.done(works.design(cell, now))
     document.take_design(cell, work.out / "design.npz", now, (work.out / "manifest.json").read_text(encoding="utf-8"))
-    _recompute(cell)
+    cell.Document.recompute()
 
 
 def predict(cell: Any) -> None:
@@ -158,7 +158,7 @@ def predict(cell: Any) -> None:
     obj.File, obj.Verdict, obj.Mirrored = str(work.out / "prediction.npz"), found["verdict"], found["mirrored"]
     obj.Rms, obj.Max = found["rms_pct"], found["max_pct"]
     obj.Proxy.remember(obj)
-    _recompute(cell)
+    cell.Document.recompute()
 
 
 def plates(cell: Any) -> None:
@@ -171,7 +171,7 @@ def plates(cell: Any) -> None:
     """
     works.require_design(cell)
     document.add_bodies(cell)
-    _recompute(cell)
+    cell.Document.recompute()
 
 
 def channel_window(cell: Any, domains: tuple[int, ...] = ()) -> None:
@@ -185,7 +185,7 @@ def channel_window(cell: Any, domains: tuple[int, ...] = ()) -> None:
     works.require_design(cell)
     set_parameters(cell, {"output.step_domains": tuple(domains)})
     document.add_window(cell)
-    _recompute(cell)
+    cell.Document.recompute()
 
 
 def mask(cell: Any, folder: str) -> None:
@@ -232,7 +232,7 @@ def _written(cell: Any, name: str, out: Path) -> None:
     obj = document.add_result(cell, name)
     obj.Folder = str(out)
     obj.Proxy.remember(obj)
-    _recompute(cell)
+    cell.Document.recompute()
 
 
 def drawings(cell: Any, folder: str = "") -> None:
@@ -274,8 +274,3 @@ def example(doc: Any, name: str) -> Any:
     cell = new_cell(doc, EXAMPLES[name])
     cell.Label = name
     return cell
-
-
-def _recompute(cell: Any) -> None:
-    """Recompute; a result that became stale only in this pass is told by those that depend on it in the next."""
-    cell.Document.recompute()

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 
-from lce_workbench.app import cell_views, pattern_views
+from lce_workbench.app import cell_views, map_views, part_views, pattern_views
 from lce_workbench.app.cell_views import Subject
 from lce_workbench.app.figures import Figure, Placed, Point, Sheet, fitting, micrometres, ratio
 from lce_workbench.app.geometry import assembled, domains_of, stored
@@ -103,7 +103,7 @@ def top_plate(subject: Subject) -> Sheet:
 
 
 def _plate(subject: Subject, plate: Plate, number: int, subtitle: str, notes: tuple[str, ...]) -> Sheet:
-    face, side = cell_views.plate_face(subject, plate), cell_views.plate_side(subject, plate)
+    face, side = part_views.plate_face(subject, plate), part_views.plate_side(subject, plate)
     scale = fitting(face, (160, 165))
     sign = -1.0 if plate == "top" else 1.0
     rows = [(f"M{k + 1}", f"{sign * x + 0.0:.4f}", f"{y + 0.0:.4f}") for k, (x, y) in enumerate(subject.frame.marks)]
@@ -137,9 +137,9 @@ def spacer(subject: Subject) -> Sheet:
         f"{CUT}; thickness: as the stock",
         "A4",
         (
-            _in(cell_views.spacer_strip(subject), (155, 30), (110, 160)),
-            _in(cell_views.spacer_edge(subject), (80, 25), (80, 110)),
-            _in(cell_views.spacer_place(subject), (60, 80), (240, 130)),
+            _in(part_views.spacer_strip(subject), (155, 30), (110, 160)),
+            _in(part_views.spacer_edge(subject), (80, 25), (80, 110)),
+            _in(part_views.spacer_place(subject), (60, 80), (240, 130)),
         ),
         ("Cut without burr: the thickness sets the gap.", "Cut line for a plotter: the DXF of this sheet, in mm."),
     )
@@ -210,7 +210,7 @@ def channels(subject: Subject) -> Sheet:
 def domain_map(subject: Subject) -> Sheet:
     """Where the domains lie and which way their directors point."""
     number = len(subject.domains)
-    few = cell_views.numbered(subject)
+    few = map_views.numbered(subject)
     found = "by their numbers" if few else "by the grid (x, y in mm)"
     return Sheet(
         "7_domains",
@@ -219,7 +219,7 @@ def domain_map(subject: Subject) -> Sheet:
         "LCE film, see design",
         "angles: as domains.csv",
         "A3",
-        (_in(cell_views.domain_map(subject), cell_views.MAP_ROOM, (190, 165)),),
+        (_in(map_views.domain_map(subject), map_views.MAP_ROOM, (190, 165)),),
         (
             "Seen from above.",
             f"Domains are found in domains.csv {found}.",

@@ -8,8 +8,8 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 from lce_solver.types import Floats
-from lce_workbench.app.cell_views import direction_colour
 from lce_workbench.app.figures import TEXT, Label, Placed, Point, Sheet, hatching
+from lce_workbench.app.map_views import direction_colour
 from lce_workbench.app.sheets import caption
 
 PAPER = {"A4": (297.0, 210.0), "A3": (420.0, 297.0)}

@@ -12,6 +12,7 @@ import FreeCADGui
 
 from lce_solver.errors import LceError
 from lce_solver.surfaces import SURFACES
+from lce_solver.types import Stage
 from lce_workbench.app import session
 from lce_workbench.app.objects import SECTIONS
 from lce_workbench.app.properties import label, properties
@@ -221,7 +222,8 @@ class Panel:
 
     def show(self, stage: str, fraction: float) -> None:
         """Show how far the work is."""
-        self.stage.setText(stage)
+        energy = f", {tr('energy')} {stage.energy:.3e}" if isinstance(stage, Stage) else ""
+        self.stage.setText(f"{stage}{energy}")
         self.bar.setValue(round(1000 * min(max(fraction, 0.0), 1.0)))
 
     def stop(self, *_: Any) -> None:

@@ -41,7 +41,7 @@ class Running(QtCore.QObject):
         """Pass progress on."""
         self.said += bytes(self.process.readAllStandardOutput())
         *lines, self.said = self.said.split(b"\n")
-        for line in lines:
+        for line in lines[-1:]:  # what was overtaken is not shown
             child.told(line.decode(errors="replace"), self.progress)
 
     def next(self, code: int, _: object = None) -> None:

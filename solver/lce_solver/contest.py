@@ -6,7 +6,6 @@ never smoothed. Who will be best shows early, so that most starts cost little.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,8 +13,8 @@ import numpy as np
 from lce_solver.descent import start
 from lce_solver.levels import levels
 from lce_solver.metric import DEFAULT, Stop, as_complex, lay_flat
-from lce_solver.runner import Mesh, Runner, advanced, anew, finer_mesh, first_mesh, moved, starting
-from lce_solver.types import Flattening, Material, Progress, Start, Surface, silent
+from lce_solver.runner import Mesh, Report, Runner, advanced, anew, finer_mesh, first_mesh, moved, starting
+from lce_solver.types import Flattening, Material, Progress, Stage, Start, Surface, silent
 
 
 @dataclass(frozen=True)
@@ -111,9 +110,6 @@ def transferred(
     return Finalist(runner.start, fine.flattening(runner.found))
 
 
-Report = Callable[[float], None]
-
-
 def _first_rounds(
     mesh: Mesh, field: list[Runner], stop: Stop, smoothing: float, report: Report
 ) -> tuple[list[Runner], dict[float, Start]]:
@@ -192,12 +188,12 @@ def _share(progress: Progress, meshes: list[Surface], k: int) -> Report:
     """Progress on mesh ``k``, which takes as long as it is large."""
     size = np.array([len(mesh.faces) for mesh in meshes], dtype=np.float64)
     begin, part = size[:k].sum() / size.sum(), size[k] / size.sum()
-    return lambda done: progress("flatten", float(begin + part * done))
+    return lambda done, energy: progress(Stage("flatten", energy), float(begin + part * done))
 
 
 def _within(report: Report, low: float, high: float) -> Report:
-    return lambda done: report(low + (high - low) * done)
+    return lambda done, energy: report(low + (high - low) * done, energy)
 
 
-def _unheard(done: float) -> None:
+def _unheard(done: float, energy: float) -> None:
     """Of work that was not expected."""

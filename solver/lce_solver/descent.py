@@ -15,8 +15,8 @@ Complexes = NDArray[np.complex128]
 Function = Callable[[Complexes], tuple[float, Complexes]]
 """Value and gradient, the latter as d/dx + i d/dy."""
 Inverse = Callable[[Complexes], Complexes]
-Tick = Callable[[int], None]
-"""Called before each iteration with its number; it may raise to stop the work."""
+Tick = Callable[[int, float], None]
+"""Called before each iteration with its number and the value reached; it may raise to stop the work."""
 
 WINDOW = 10
 """Iterations over which the decrease is averaged: single steps of L-BFGS are uneven."""
@@ -127,7 +127,7 @@ class _Point:
     gradient: Complexes
 
 
-def unheard(iteration: int) -> None:
+def unheard(iteration: int, value: float) -> None:
     """The `Tick` that does nothing."""
 
 
@@ -152,7 +152,7 @@ def minimise(
     history = begin.history.tolist() or [point.value]
     memory = begin.memory or Memory(method.memory, len(point.x))
     while np.isfinite(point.value) and len(history) <= max_iterations:
-        tick(len(history) - 1)
+        tick(len(history) - 1, point.value)
         after = _search(function, point, memory.downhill(point.gradient, inverse, method.stride))
         if after is None and len(memory):
             memory.clear()  # it is stale: begin again from the plain step

@@ -118,7 +118,7 @@ def flatten(
     ----------
     angle : direction of the first guess of the director, from the long side of the rigid map [rad].
     method : a name in `METHODS`; ``local_global`` is the paper's.
-    tick : called before each iteration with its number; it may raise to stop.
+    tick : called before each iteration with its number and the energy; it may raise to stop.
     """
     begin = stretched(rigid.w, stretches, angle)
     return refine(rigid.surface, rigid.operator, begin, stretches, stop, method=method, twin=rigid.twins, tick=tick)

@@ -32,6 +32,9 @@ from lce_solver.twist import bending_left, bending_tensor, pull_back
 from lce_solver.types import Flattening, Floats, Ints, Material, Start, Status, Surface
 from lce_solver.wirtinger import Operator, energy, operator, stretched
 
+Report = Callable[[float, float], None]
+"""Called with the fraction done and the energy of the descent that is running."""
+
 TYPICAL = 100
 """Iterations of one descent, for the progress bar only."""
 
@@ -95,7 +98,7 @@ def starting(mesh: Mesh, rigid: Rigid, angle: float, symmetric: bool) -> Runner:
 
 
 def advanced(
-    mesh: Mesh, field: list[Runner], smoothing: float, stop: Stop, report: Callable[[float], None], *, last: bool
+    mesh: Mesh, field: list[Runner], smoothing: float, stop: Stop, report: Report, *, last: bool
 ) -> list[Runner]:
     """All runners after a descent with this smoothing; the ``last`` one goes on with the one before."""
     goal, result = mesh.objective(smoothing), []
@@ -110,8 +113,8 @@ def advanced(
     return result
 
 
-def _tell(report: Callable[[float], None], done: float, share: float, iteration: int) -> None:
-    report(done + share * iteration / (iteration + TYPICAL))
+def _tell(report: Report, done: float, share: float, iteration: int, value: float) -> None:
+    report(done + share * iteration / (iteration + TYPICAL), value)
 
 
 def _judged(mesh: Mesh, runner: Runner) -> Runner:

@@ -18,7 +18,7 @@ from lce_solver.load import Load, vertex_areas
 from lce_solver.shell_energy import Reference, energy, parts, reference, residual_strain, stiffness
 from lce_solver.shell_minimise import Minimum, Solve, minimise
 from lce_solver.shell_patch import Shell, shell
-from lce_solver.types import Design, Floats, HeatingStep, Ints, Material, Prediction, Progress, owned, silent
+from lce_solver.types import Design, Floats, HeatingStep, Ints, Material, Prediction, Progress, Stage, owned, silent
 
 STEPS = 10
 ONSET = 2
@@ -167,7 +167,7 @@ def heat(
         before, now = (start, start, *done.frames)[-2:]
         aim = flat.at(float(lambdas[step]))
         ahead = _extrapolate(flat, aim, before, now)
-        found = relax(flat, aim, ahead, tolerances[step], watch=partial(progress, "heating", step / len(lambdas)))
+        found = relax(flat, aim, ahead, tolerances[step], watch=partial(_tell, progress, step / len(lambdas)))
         own, loading = parts(flat.sheet, aim, found.x), flat.load.energy(found.x)[0] if flat.load else 0.0
         told = HeatingStep(float(lambdas[step]), *own, found.iterations, found.status, loading)
         done = Heated((*done.history, told), (*done.frames, found.x))
@@ -179,6 +179,11 @@ def heat(
     return Prediction(shape, last.stretching, last.bending, strain, last.status, done.history, frames, last.loading)
 
 
+def _tell(progress: Progress, fraction: float, energy: float) -> None:
+    """Progress of a minimisation."""
+    progress(Stage("heating", energy), fraction)
+
+
 def _extrapolate(flat: Film, aim: Reference, before: Floats, now: Floats) -> Floats:
     """Go on as in the last step, if that lowers the energy."""
     ahead = 2 * now - before
@@ -186,7 +191,7 @@ def _extrapolate(flat: Film, aim: Reference, before: Floats, now: Floats) -> Flo
 
 
 def relax(
-    flat: Film, aim: Reference, start: Floats, tolerance: float, *, watch: Callable[[], None] = lambda: None
+    flat: Film, aim: Reference, start: Floats, tolerance: float, *, watch: Callable[[float], None] = lambda _: None
 ) -> Minimum:
     """Minimise the energy against ``aim`` from ``start`` (n_v, 3) [mm]; ``tolerance`` as for `predict`."""
     sheet = flat.sheet

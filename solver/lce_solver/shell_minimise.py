@@ -53,12 +53,12 @@ def minimise(
     tolerance: float,
     longest: float,
     limit: int,
-    watch: Callable[[], None],
+    watch: Callable[[float], None],
 ) -> Minimum:
     """Minimise from ``x`` (n_v, 3) until a step is expected to save less than ``tolerance``, an energy.
 
     ``factorise(x)`` returns the solver of a positive definite approximation of the Hessian. No vertex moves further
-    than ``longest`` [mm] in one step. ``watch`` is called before every step and may raise.
+    than ``longest`` [mm] in one step. ``watch`` is called with the energy before every step and may raise.
     """
     at = _Point(x, *energy(x))
     if not np.isfinite(at.energy):
@@ -68,7 +68,7 @@ def minimise(
     for iteration in range(limit):
         step = _direction(solve, pairs, at.gradient)
         saving = -float(np.vdot(at.gradient, step)) / 2
-        watch()
+        watch(at.energy)
         if saving < tolerance:
             return Minimum(at.x, at.energy, Status.CONVERGED, iteration, factorisations, saving)
         found, fraction = _search(energy, at, step, saving, longest)

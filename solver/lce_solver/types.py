@@ -16,7 +16,20 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 Progress = Callable[[str, float], None]
-"""Called with the stage's name and the fraction done in [0, 1]; it may raise `Cancelled` to stop the work."""
+"""Called with the stage's name (a `Stage` where energy is minimised) and the fraction done in [0, 1]; it may raise
+`Cancelled` to stop the work."""
+
+
+class Stage(str):
+    """A stage's name that also tells the energy that is being minimised."""
+
+    __slots__ = ("energy",)
+
+    def __new__(cls, name: str, energy: float) -> Stage:
+        """The name, with the ``energy`` reached."""
+        made = super().__new__(cls, name)
+        made.energy = energy
+        return made
 
 
 def silent(stage: str, fraction: float) -> None:

@@ -260,10 +260,14 @@ def test_valid_starts_come_before_good_scores():
 
 def test_progress_runs_to_one_and_can_stop():
     heard = []
-    compete(hill(), LCE, starts=2, progress=lambda stage, fraction: heard.append(fraction))
-    assert heard == sorted(heard)
-    assert heard[0] == 0
-    assert heard[-1] == 1
+    found, _ = compete(hill(), LCE, starts=2, progress=lambda stage, fraction: heard.append((stage, fraction)))
+    fractions = [fraction for _, fraction in heard]
+    assert fractions == sorted(fractions)
+    assert fractions[0] == 0
+    assert heard[-1] == ("flatten", 1)
+    energies = [stage.energy for stage, _ in heard[:-1]]
+    assert min(energies) > 0
+    assert found.energy[-1] < energies[-1] < (1 + 1e-4) * found.energy[-1]  # told before the last iteration
 
     def stop(stage, fraction):
         if fraction > 0.3:

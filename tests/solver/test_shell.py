@@ -304,10 +304,11 @@ def test_settled_sheet_stays():
 
 def test_progress_rises_to_one_and_may_stop_the_run():
     seen = []
-    predict(cone_film(disk(4)), seed=0, progress=lambda stage, done: seen.append((stage, done)))
+    found = predict(cone_film(disk(4)), seed=0, progress=lambda stage, done: seen.append((stage, done)))
     fractions = [done for _, done in seen]
     assert fractions == sorted(fractions)
     assert seen[-1] == ("heating", 1.0)
+    assert seen[-2][0].energy == pytest.approx(found.energy, rel=1e-6)  # told before the last step
 
     def stop(stage, done):
         if done > 0.4:
