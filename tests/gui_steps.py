@@ -157,7 +157,46 @@ def walk(mesh, folder, pictures=""):
     found["colour"] = [round(c, 2) for c in doc.BottomLand.ViewObject.ShapeColor[:3]]
     found["transparency"] = doc.TopGlass.ViewObject.Transparency
     picture(pictures, "tree")
+    direct(found, doc, "Inspect", pictures)
+    found["findings"] = findings(doc)
+    picture(pictures, "jump")
+    direct(found, doc, "Drawings", pictures)
     found["console"] = console()
+    return found
+
+
+def direct(found, doc, name, pictures):
+    """A step without a panel: done, undone, done again."""
+    former = state(doc)
+    run(name)
+    pump(1)
+    picture(pictures, name)
+    found["names"].append(doc.UndoNames[0])
+    done = fingerprint(doc)
+    doc.undo()
+    pump(0.5)
+    found["undo"][name] = differences(former, state(doc))
+    doc.redo()
+    pump(0.5)
+    found["undo"][f"{name} again"] = differences((done, []), (fingerprint(doc), []))
+
+
+def findings(doc):
+    """The list of findings, and what a double click on those with a place does."""
+    import FreeCADGui
+
+    table = widget("lce_findings").widget()
+    items = [table.topLevelItem(row) for row in range(table.topLevelItemCount())]
+    found = {"rows": [[item.text(column) for column in range(6)] for item in items]}
+    view = FreeCADGui.getDocument(doc.Name).activeView()
+    for check in ("body_volume", "stretch_max", "interference"):
+        item = next(item for item in items if item.text(1) == check)
+        height = view.getCameraNode().height.getValue()
+        table.itemDoubleClicked.emit(item, 0)
+        pump(0.3)
+        marked = sum(child.getName().getString() == "lce_findings" for child in view.getSceneGraph().getChildren())
+        names = [obj.Name for obj in FreeCADGui.Selection.getSelection()]
+        found[check] = [names, marked, view.getCameraNode().height.getValue() / height]
     return found
 
 

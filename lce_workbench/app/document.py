@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -12,6 +14,7 @@ import FreeCAD
 
 from lce_solver.errors import InputError
 from lce_workbench.app import cells
+from lce_workbench.app.bill import add_bill
 from lce_workbench.app.fcstd import Look, finish, isometric
 from lce_workbench.app.objects import CELL_SECTIONS, FILES, SHAPED_BY, Body, Parameters, is_fine, prisms_around
 from lce_workbench.app.properties import write
@@ -65,6 +68,7 @@ def build(doc: Any, design_npz: Path, job: Job, base: Path | None = None) -> Any
     cell = new_cell(doc, job, base)
     take_design(cell, design_npz, job)
     add_bodies(cell)
+    add_bill(cell)
     add_window(cell)
     return cell
 
@@ -107,6 +111,14 @@ def take_design(cell: Any, design_npz: Path, job: Job, manifest: str = "") -> No
     design = cells.design_of(cell)
     design.File, design.Job, design.Manifest = str(design_npz), jobfile.dump(job), manifest
     design.Proxy.remember(design)
+
+
+def take_findings(cell: Any, records: Sequence[Mapping[str, Any]]) -> None:
+    """Put what was found, as the manifest records it, into the cell's review."""
+    obj = add_result(cell, "Review")
+    obj.Errors, obj.Warnings = (sum(r["severity"] == level for r in records) for level in ("error", "warning"))
+    obj.Findings = [f"{r['severity']}: {r['message']}" for r in records]
+    obj.Records = [json.dumps(r) for r in records]
 
 
 def add_bodies(cell: Any) -> None:

@@ -63,7 +63,15 @@ def _body_2(obj: Any) -> None:
     obj.Parameters = [section for section in obj.Parameters if section.Section in wanted]
 
 
+def _body_3(obj: Any) -> None:
+    """The volume became a property, which the bill of materials reads."""
+    obj.addProperty("App::PropertyVolume", "Volume", "Cell", "Volume as built")
+    obj.setEditorMode("Volume", 1)
+    obj.Volume = obj.Shape.Volume
+
+
 STEPS: tuple[dict[str, Callable[[Any], None]], ...] = (
     {"Parameters": _parameters_2, "DesignData": _design_2, "Body": _body_2},
+    {"Body": _body_3},
 )
 """From schema 1 to 2, and so on: class of a proxy -> what is done."""

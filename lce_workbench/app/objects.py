@@ -147,6 +147,7 @@ class Body(Proxy):
         super().setup(obj)
         add(obj, "App::PropertyLinkGlobal", "Design", "The design that it is made for")
         add(obj, "App::PropertyLinkListGlobal", "Parameters", "The parameters that shape it")
+        add(obj, "App::PropertyVolume", "Volume", "Volume as built", mode=READ_ONLY)
         add(obj, "App::PropertyColor", "Colour", "Colour at first sight", mode=HIDDEN)
         add(obj, "App::PropertyPercent", "Transparency", "Transparency at first sight", mode=HIDDEN)
 
@@ -163,6 +164,7 @@ class Body(Proxy):
         from lce_workbench.cad.part import solid
 
         prisms = prisms_of(obj)
+        obj.Volume = sum(prism.volume for prism in prisms)  # each solid is checked against its prism's
         if not prisms:  # an option of the workshop was switched off
             obj.Shape = Part.Shape()
             return

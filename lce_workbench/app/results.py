@@ -192,16 +192,17 @@ def _counted(path: Path, changed: int, job: Job, made_for: Job) -> tuple[int, in
 
 
 class ReviewData(Outcome):
-    """What was found in the written files."""
+    """What was found in the cell, and in the written files."""
 
     SECTIONS = tuple(name for name in vars(Job()) if name not in {"target", "material", "domains", "solver"})
 
     def setup(self, obj: Any) -> None:
         super().setup(obj)
-        add(obj, "App::PropertyString", "Folder", "The output folder that was reviewed", mode=READ_ONLY)
+        add(obj, "App::PropertyString", "Folder", "The output folder that was reviewed, if any was", mode=READ_ONLY)
         add(obj, "App::PropertyInteger", "Errors", "Findings that forbid fabrication", mode=READ_ONLY)
         add(obj, "App::PropertyInteger", "Warnings", "Findings to look at", mode=READ_ONLY)
         add(obj, "App::PropertyStringList", "Findings", "What the checks measured", mode=READ_ONLY)
+        add(obj, "App::PropertyStringList", "Records", "The same with values, limits and places, as JSON", mode=HIDDEN)
 
 
 RESULTS: dict[str, tuple[type[Result], str]] = {

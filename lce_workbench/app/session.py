@@ -21,10 +21,13 @@ from typing import Any
 
 from lce_solver.errors import InputError
 from lce_workbench.app import cells, child, document, works
+from lce_workbench.app.bill import add_bill
+from lce_workbench.app.inspection import inspected
 from lce_workbench.app.objects import FILES, SECTIONS, job_of
 from lce_workbench.app.properties import properties
 from lce_workbench.core import jobfile
 from lce_workbench.core.job import Job
+from lce_workbench.outputs import as_record
 
 Settings = Mapping[str, Any]
 """``section.key`` -> value; `None` takes an optional value back."""
@@ -212,6 +215,27 @@ def export(cell: Any, folder: str) -> None:
     _written(cell, "Mask", work.out)
 
 
+def inspect(cell: Any) -> None:
+    """Check the cell in the document, list its parts with volumes and masses, and keep the findings; seconds.
+
+    Raises
+    ------
+    InputError
+        There is no design, or there are no plates.
+    """
+    works.require_bodies(cell)
+    add_bill(cell)
+    cell.Document.recompute()
+    solved = json.loads(cells.design_of(cell).Manifest or '{"findings": []}')["findings"]
+    document.take_findings(cell, solved + _measured(cell))
+    _written(cell, "Review", "")
+
+
+def _measured(cell: Any) -> list[dict[str, Any]]:
+    """What is found in the bodies, if there are any."""
+    return [as_record(finding, "cell") for finding in (inspected(cell) if works.bodies(cell) else ())]
+
+
 def review(cell: Any, folder: str) -> None:
     """Write everything, review it, and list what was found.
 
@@ -221,14 +245,12 @@ def review(cell: Any, folder: str) -> None:
         There is no current design, or what a stage says.
     """
     work = child.done(works.review(cell, job(cell), Path(folder)))
-    obj = document.add_result(cell, "Review")
     found = json.loads((work.out / "manifest.json").read_text(encoding="utf-8"))["findings"]
-    obj.Errors, obj.Warnings = (sum(f["severity"] == level for f in found) for level in ("error", "warning"))
-    obj.Findings = [f"{f['severity']}: {f['message']}" for f in found]
+    document.take_findings(cell, found + _measured(cell))
     _written(cell, "Review", work.out)
 
 
-def _written(cell: Any, name: str, out: Path) -> None:
+def _written(cell: Any, name: str, out: Path | str) -> None:
     obj = document.add_result(cell, name)
     obj.Folder = str(out)
     obj.Proxy.remember(obj)

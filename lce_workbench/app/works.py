@@ -103,6 +103,25 @@ def require_design(cell: Any) -> None:
         raise InputError(msg)
 
 
+def bodies(cell: Any) -> list[Any]:
+    """Plates, spacer, film and channel windows of a cell."""
+    return [obj for obj in cell.OutListRecursive if cells.kind_of(obj) == "Body"]
+
+
+def require_bodies(cell: Any) -> None:
+    """Refuse a cell without plates.
+
+    Raises
+    ------
+    InputError
+        There are none.
+    """
+    require_design(cell)
+    if not bodies(cell):
+        msg = f"{cell.Label} has no plates yet; run Plates and Spacer first"
+        raise InputError(msg)
+
+
 def require_current(cell: Any, job: Job) -> None:
     """Refuse a design that was made for another metric.
 

@@ -58,9 +58,8 @@ class StepCommand:
         cell = cells.the_cell(FreeCAD.ActiveDocument, FreeCADGui.Selection.getSelection())
         if self.step.panel:
             return show(self.step, cell.Document, cell)
-        once(cell.Document, self.step.title, f"session.{self.step.call}({path(cell)})")
-        for page in cell.Document.findObjects("TechDraw::DrawPage")[:1]:
-            page.ViewObject.doubleClicked()
+        if once(cell.Document, self.step.title, f"session.{self.step.call}({path(cell)})"):
+            self.step.after(cell)
         return None
 
 
@@ -107,16 +106,17 @@ def path(obj: Any) -> str:
     return f"App.getDocument({obj.Document.Name!r}).getObject({obj.Name!r})"
 
 
-def once(doc: Any, title: str, line: str) -> None:
-    """Run a line as one undo step."""
+def once(doc: Any, title: str, line: str) -> bool:
+    """Run a line as one undo step; returns whether it went well."""
     doc.openTransaction(title)
     try:
         say(line)
     except Exception as fault:  # FreeCAD hands on what the line raised as an exception of its own
         doc.abortTransaction()
         refuse(str(fault))
-        return
+        return False
     doc.commitTransaction()
+    return True
 
 
 def show(step: Step, doc: Any, cell: Any, source: Any = None) -> None:

@@ -10,6 +10,7 @@ import FreeCADGui
 from lce_workbench.app import cells
 from lce_workbench.app.objects import LABELS, SECTIONS
 from lce_workbench.core import jobfile
+from lce_workbench.gui import findings
 from lce_workbench.gui.commands import show
 from lce_workbench.gui.steps import STEPS, Step
 
@@ -21,6 +22,9 @@ def edit(obj: Any) -> bool | None:
     """Open the panel; `None` where FreeCAD's own editing is as good."""
     if FreeCADGui.Control.activeDialog():
         return False
+    if cells.kind_of(obj) == "ReviewData" and obj.Records:
+        findings.show(cells.cell_of(obj))
+        return False  # nothing stays in edit mode
     step = _step(obj)
     if step is None:
         return None

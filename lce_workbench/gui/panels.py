@@ -258,6 +258,7 @@ class Panel:
             FreeCADGui.SendMsgToActiveView("ViewFit")
         memory.remember(self.step.name, {n: e.get() for n, e in self.editors.items()}, folder)
         self.close()
+        self.step.after(self.cell)
         return True
 
     def lines(self, settings: dict[str, Any], folder: str) -> list[str]:

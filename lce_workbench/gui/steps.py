@@ -43,6 +43,25 @@ class Step:
     new: bool = False
     """Whether it makes a cell; the others need one."""
     panel: bool = True
+    after: Callable[[Any], None] = lambda _: None
+    """Shows the result of the cell in the window."""
+
+
+def _first_page(cell: Any) -> None:
+    """Open the first drawing."""
+    import FreeCADGui
+
+    for page in cell.Document.findObjects("TechDraw::DrawPage")[:1]:
+        page.ViewObject.doubleClicked()
+        FreeCADGui.updateGui()
+        FreeCADGui.SendMsgToActiveView("ViewFit")
+
+
+def _findings(cell: Any) -> None:
+    """Open the list of findings."""
+    from lce_workbench.gui.findings import show
+
+    show(cell)
 
 
 STEPS = (
@@ -85,11 +104,15 @@ STEPS = (
     ),
     Step(
         "Drawings", "drawings", "Drawings", "Adds the fabrication drawings of the cell to the document",
-        "drawings", "Drawings", panel=False,
+        "drawings", "Drawings", panel=False, after=_first_page,
+    ),
+    Step(
+        "Inspect", "inspect", "Design Review", "Checks the cell, lists its parts and masses, and shows what was found",
+        "inspect", "Design review", panel=False, after=_findings,
     ),
     Step(
         "Review", "review", "Review…", "Writes all files, reads them back and lists what was found",
-        "review", "Review", work=works.review, folder=True,
+        "review", "Review", work=works.review, folder=True, after=_findings,
     ),
     Step(
         "Export", "export", "Export…", "Writes everything: table, masks, CAD files and report, as ./lce build does",

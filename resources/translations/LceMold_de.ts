@@ -28,6 +28,38 @@
    <translation>(keine)</translation>
   </message>
   <message>
+   <source>Finding</source>
+   <translation>Befund</translation>
+  </message>
+  <message>
+   <source>Check</source>
+   <translation>Prüfung</translation>
+  </message>
+  <message>
+   <source>Value</source>
+   <translation>Wert</translation>
+  </message>
+  <message>
+   <source>Limit</source>
+   <translation>Grenze</translation>
+  </message>
+  <message>
+   <source>Place</source>
+   <translation>Ort</translation>
+  </message>
+  <message>
+   <source>What was measured</source>
+   <translation>Was gemessen wurde</translation>
+  </message>
+  <message>
+   <source>Double-click a finding to see its place</source>
+   <translation>Doppelklick auf einen Befund zeigt seinen Ort</translation>
+  </message>
+  <message>
+   <source>Design review</source>
+   <translation>Entwurfsprüfung</translation>
+  </message>
+  <message>
    <source>stale: parameters changed</source>
    <translation>veraltet: Parameter geändert</translation>
   </message>
@@ -140,6 +172,10 @@
    <translation>wird angehalten</translation>
   </message>
   <message>
+   <source>energy</source>
+   <translation>Energie</translation>
+  </message>
+  <message>
    <source>Target</source>
    <translation>Ziel</translation>
   </message>
@@ -222,6 +258,14 @@
   <message>
    <source>Adds the fabrication drawings of the cell to the document</source>
    <translation>Fügt dem Dokument die Fertigungszeichnungen der Zelle hinzu</translation>
+  </message>
+  <message>
+   <source>Design Review</source>
+   <translation>Entwurfsprüfung</translation>
+  </message>
+  <message>
+   <source>Checks the cell, lists its parts and masses, and shows what was found</source>
+   <translation>Prüft die Zelle, listet Teile und Massen auf und zeigt die Befunde</translation>
   </message>
   <message>
    <source>Review…</source>

@@ -105,7 +105,7 @@ def test_a_document_of_schema_1_opens_works_and_is_saved_anew(tmp_path):
     path = ROOT / "tests" / "documents" / "schema1.FCStd"
     found = freecad.console(steps.old, path=path, save_as=tmp_path / "new.FCStd")
     assert "Traceback" not in freecad.said
-    assert found["versions"] == [2]
+    assert found["versions"] == [3]
     assert found["labels"]["SheetParameters"] == "Sheet"
     assert "surface='saddle'" in found["job"]
     assert "width_um=5.0" in found["job"]

@@ -51,16 +51,32 @@ def test_cancel_leaves_no_trace(walked, name):
     assert walked["cancel"][name] == [False, []]
 
 
-@pytest.mark.parametrize("name", STEPS)
+@pytest.mark.parametrize("name", [*STEPS, "Inspect", "Drawings"])
 def test_undo_brings_back_the_former_state_and_redo_the_later_one(walked, name):
     assert walked["undo"][name] == []
     assert walked["undo"][f"{name} again"] == []
 
 
 def test_each_step_is_one_undo_step_and_one_python_line(walked):
-    assert walked["names"] == ["New cell", "Design", "Predict", "Plates and spacer", "Channel window", "Mask"]
-    for call in ("new_cell", "design", "predict", "plates", "channel_window", "mask"):
+    assert walked["names"] == [
+        "New cell", "Design", "Predict", "Plates and spacer", "Channel window", "Mask", "Design review", "Drawings",
+    ]  # fmt: skip
+    for call in ("new_cell", "design", "predict", "plates", "channel_window", "mask", "inspect", "drawings"):
         assert f"session.{call}(App.getDocument('Walk')" in walked["console"].replace("\n", "")
+
+
+def test_findings_are_listed_with_limits_and_lead_to_their_places(walked):
+    rows = {row[1]: row for row in walked["findings"]["rows"]}
+    assert {"stretch_rms", "twist_limit", "interference", "marks_seen", "body_gap"} <= rows.keys()
+    assert rows["body_gap"][2:5] == ["0 nm", "1 nm", "top_land and bottom_land"]
+    assert all(row[0] in {"error", "warning", "info"} and row[5] for row in rows.values())
+    (selected, *_), (_, marked, nearer), nowhere = (
+        walked["findings"][check] for check in ("body_volume", "stretch_max", "interference")
+    )
+    assert len(selected) == 1
+    assert marked == 1
+    assert nearer < 0.8
+    assert nowhere == [[], 0, 1.0]
 
 
 def test_the_window_stays_free_while_the_solver_works(walked):
