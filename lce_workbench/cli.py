@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from lce_solver.errors import InputError, LceError
 from lce_workbench import ROOT, __version__
+from lce_workbench.packages import needed
 
 if TYPE_CHECKING:
     from lce_solver.types import Progress
@@ -59,7 +60,8 @@ def guarded(command: Callable[[list[str]], int], argv: list[str]) -> int:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _interrupt)
     try:
-        return command(argv)
+        with needed():
+            return command(argv)
     except LceError as fault:
         return _fail(str(fault), fault.exit_code, debug=debug)
     except KeyboardInterrupt:

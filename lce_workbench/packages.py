@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from lce_solver.errors import EnvironmentFault
@@ -19,6 +21,25 @@ def append() -> None:
     path = str(folder())
     if path not in sys.path:
         sys.path.append(path)
+
+
+@contextmanager
+def needed() -> Iterator[None]:
+    """Turn the lack of a package into one sentence that says how to get it.
+
+    Raises
+    ------
+    EnvironmentFault
+        A package is missing.
+    """
+    try:
+        yield
+    except ModuleNotFoundError as fault:
+        msg = (
+            f"the Python package {fault.name} is missing in {sys.prefix}; run {ROOT / 'lce'} demo once, which "
+            "installs all that is needed, and start again"
+        )
+        raise EnvironmentFault(msg) from fault
 
 
 def prefer() -> None:

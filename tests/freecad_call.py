@@ -44,16 +44,20 @@ SETTINGS = """<?xml version="1.0" encoding="UTF-8"?>
 
 
 class FreeCAD:
-    """FreeCAD of a user whose settings lie below ``home``; ``addon`` installs this checkout for him."""
+    """FreeCAD of a user whose settings lie below ``home``, with a checkout installed as ``addon``."""
 
-    def __init__(self, home: Path, *, addon: bool = True) -> None:
+    def __init__(self, home: Path, *, addon: Path | None = ROOT) -> None:
         self.home = home
         self.said = ""
         """What the last process printed."""
+        self.before: list[str] = []
+        """A program that starts FreeCAD, with its words."""
+        self.place = home
+        """Where scripts and answers are written."""
         (home / "Mod").mkdir(parents=True)
         (home / "user.cfg").write_text(SETTINGS, encoding="utf-8")
         if addon:
-            (home / "Mod" / "LceMold").symlink_to(ROOT)
+            (home / "Mod" / "LceMold").symlink_to(addon)
 
     def console(self, function: Callable[..., Any], **arguments: Any) -> Any:
         """Return ``function(**arguments)`` from `freecadcmd`."""
@@ -61,7 +65,7 @@ class FreeCAD:
 
     def window(self, display: str, function: Callable[..., Any], **arguments: Any) -> Any:
         """Return ``function(**arguments)`` from FreeCAD with its window."""
-        macro = self.home / "call.FCMacro"
+        macro = self.place / "call.FCMacro"
         macro.write_text(self._code(function, arguments) + WITH_WINDOW, encoding="utf-8")
         return self._answer("freecad", macro, DISPLAY=display)
 
@@ -72,13 +76,13 @@ class FreeCAD:
             module=module,
             function=function.__name__,
             arguments=json.dumps(arguments, default=str),
-            answer=str(self.home / "answer.json"),
+            answer=str(self.place / "answer.json"),
         )
 
     def _answer(self, *words: str | Path, **more: str) -> Any:
-        answer = self.home / "answer.json"
+        answer = self.place / "answer.json"
         answer.unlink(missing_ok=True)
-        ended = start(*words, env=environment(self.home, **more), cwd=self.home, seconds=300)
+        ended = start(*self.before, *words, env=environment(self.home, **more), cwd=self.home, seconds=300)
         self.said = ended.out + ended.err
         assert answer.exists(), f"no answer from FreeCAD, exit code {ended.code}:\n{self.said}"
         result = json.loads(answer.read_text(encoding="utf-8"))

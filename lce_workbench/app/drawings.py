@@ -332,20 +332,23 @@ def export(pages: Sequence[Any], folder: Path) -> None:
     ------
     OSError
         A file cannot be written.
+    EnvironmentFault
+        A package that writes them is missing.
     """
     packages.append()
     fonts = Path(FreeCAD.getResourceDir()) / "Mod" / "TechDraw" / "Resources" / "fonts"
     written = []
-    for page in pages:
-        beside, source = _beside(page)
-        sheet = sheet_of(source)
-        path = folder / f"{sheet.name}.svg"
-        _export_svg(page, beside, path)
-        write_svg(path, source.Svg)
-        write_pdf([(path, sheet.paper)], fonts, path.with_suffix(".pdf"))
-        write_dxf(sheet, subject_of(*_now(source.Design)).code, path.with_suffix(".dxf"))
-        written.append((path, sheet.paper))
-    write_pdf(written, fonts, folder / "drawings.pdf")
+    with packages.needed():
+        for page in pages:
+            beside, source = _beside(page)
+            sheet = sheet_of(source)
+            path = folder / f"{sheet.name}.svg"
+            _export_svg(page, beside, path)
+            write_svg(path, source.Svg)
+            write_pdf([(path, sheet.paper)], fonts, path.with_suffix(".pdf"))
+            write_dxf(sheet, subject_of(*_now(source.Design)).code, path.with_suffix(".dxf"))
+            written.append((path, sheet.paper))
+        write_pdf(written, fonts, folder / "drawings.pdf")
 
 
 def _beside(page: Any) -> tuple[Any, Any]:

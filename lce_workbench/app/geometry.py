@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import lru_cache
 from pathlib import Path
 
-from lce_solver.errors import EnvironmentFault
 from lce_solver.types import Design
 from lce_workbench.core.cell import Cell
 from lce_workbench.core.closed import closed
@@ -13,6 +12,7 @@ from lce_workbench.core.domains import Domains, partition
 from lce_workbench.core.job import Job, Sheet
 from lce_workbench.divided import read_domains
 from lce_workbench.outputs import read_design
+from lce_workbench.packages import needed
 
 
 def stored(path: Path, wanted: Sheet | None = None, made_for: Sheet | None = None) -> Design:
@@ -38,21 +38,11 @@ def _read(path: Path, changed: int) -> Design:  # noqa: ARG001 - a changed file 
 
 @lru_cache(maxsize=4)
 def _retwisted(path: Path, changed: int, wanted: Sheet) -> Design:
-    try:
+    with needed():
         from lce_solver.bounded import retwisted
         from lce_solver.twist import second_form
-    except ImportError as missing:
-        raise _incomplete(missing) from missing
     plan = _read(path, changed)
     return retwisted(plan, second_form(plan.surface, plan.uv), **wanted.twist)
-
-
-def _incomplete(missing: ImportError) -> EnvironmentFault:
-    msg = (
-        f"{missing.name or 'SciPy'} is missing in FreeCAD's Python, so the twist cannot be solved for another film; "
-        "install it (Debian's python3-scipy, or `./lce demo`, which installs all), or set the sheet's values back"
-    )
-    return EnvironmentFault(msg)
 
 
 def domains_of(path: Path, job: Job, made_for: Job | None = None) -> Domains:
@@ -67,10 +57,8 @@ def _domains(path: Path, changed: int, job: Job, made_for: Job | None) -> Domain
     plan = stored(path, job.sheet, made_for.sheet)
     if job.domains.kind == "triangles" and not job.channels.align_phase:
         return partition(plan)
-    try:
+    with needed():
         from lce_workbench.core.partition import divide
-    except ImportError as missing:
-        raise _incomplete(missing) from missing
     return divide(plan, job)[0]
 
 

@@ -287,7 +287,8 @@ def assert_looks(shown, picture):
     assert np.mean(np.ptp(pixels, axis=2) > 40) > 0.1  # epoxy and film: neither grey nor the white behind them
 
 
-AIDS = ("Origin", "X_Axis", "Y_Axis", "Z_Axis", "XY_Plane", "XZ_Plane", "YZ_Plane")
+AIDS = ("Origin", "X_Axis", "Y_Axis", "Z_Axis", "XY_Plane", "XZ_Plane", "YZ_Plane", "BillOfMaterials")
+"""What has nothing to show in the 3D view, or hides it."""
 
 
 def test_it_opens_visible_and_coloured_and_can_be_edited_in_the_window(freecad, screen, fcstd, edited, tmp_path):
@@ -305,7 +306,7 @@ def test_it_opens_visible_and_coloured_and_can_be_edited_in_the_window(freecad, 
 
 
 def test_it_opens_visible_and_coloured_without_our_addon(screen, fcstd, tmp_path):
-    freecad = FreeCAD(tmp_path / "home", addon=False)
+    freecad = FreeCAD(tmp_path / "home", addon=None)
     shown = freecad.window(screen, steps.looks, path=fcstd, picture=tmp_path / "view.png")
     assert_looks(shown, tmp_path / "view.png")
     assert shown["TopLand"]["proxy"] != "BodyView"
