@@ -82,7 +82,7 @@ class FreeCAD:
     def _answer(self, *words: str | Path, **more: str) -> Any:
         answer = self.place / "answer.json"
         answer.unlink(missing_ok=True)
-        ended = start(*self.before, *words, env=environment(self.home, **more), cwd=self.home, seconds=300)
+        ended = start(*self.before, *words, env=environment(self.home, **more), cwd=self.home, seconds=900)
         self.said = ended.out + ended.err
         assert answer.exists(), f"no answer from FreeCAD, exit code {ended.code}:\n{self.said}"
         result = json.loads(answer.read_text(encoding="utf-8"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import Field
 from typing import Any
@@ -199,6 +200,11 @@ class Quantity(Editor):
 
     def get(self) -> Any:
         text = self.box.findChild(QtWidgets.QLineEdit).text()
+        mark, groups = self.box.locale().decimalPoint(), self.box.locale().groupSeparator()
+        if re.search(rf"\d{re.escape(groups)}\d", text):
+            # FreeCAD passes over it: where thousands are grouped by points, 1.3 mm would be 13 mm.
+            msg = f"{self.name} is {text!r}; the decimal mark of your language is {mark!r}, so leave out {groups!r}"
+            raise InputError(msg)
         try:
             written = FreeCAD.Units.Quantity(text)
         except (ValueError, ArithmeticError, OSError):

@@ -61,7 +61,19 @@ def test_each_step_is_one_undo_step_and_one_python_line(walked):
     assert walked["names"] == [
         "New cell", "Design", "Predict", "Plates and spacer", "Channel window", "Mask", "Design review", "Drawings",
     ]  # fmt: skip
-    for call in ("new_cell", "design", "predict", "plates", "channel_window", "mask", "inspect", "drawings"):
+    calls = (
+        "new_cell",
+        "design",
+        "predict",
+        "plates",
+        "channel_window",
+        "mask",
+        "inspect",
+        "drawings",
+        "export",
+        "review",
+    )
+    for call in calls:
         assert f"session.{call}(App.getDocument('Walk')" in walked["console"].replace("\n", "")
 
 
@@ -80,7 +92,9 @@ def test_findings_are_listed_with_limits_and_lead_to_their_places(walked):
 
 
 def test_the_window_stays_free_while_the_solver_works(walked):
-    assert max(walked["free"]) < 0.1
+    by_the_wall, by_the_processor = (max(times) for times in zip(*walked["free"], strict=True))
+    assert by_the_processor < 0.1
+    assert by_the_wall < 0.1 * max(1.0, os.getloadavg()[0])
 
 
 def test_results_are_current_and_bodies_are_seen_in_their_colours(walked):
@@ -130,7 +144,8 @@ def test_stop_ends_the_work_within_a_second_and_leaves_the_document_as_it_was(mi
     assert seconds < 1.0 + 0.5 * os.getloadavg()[0]
     assert still_open
     assert changed == []
-    assert mistaken["stage"]
+    assert mistaken["stage"].startswith("flatten, energy ")
+    assert float(mistaken["stage"].split()[-1]) > 0
     assert mistaken["busy"] == [False, True]
     for case in ("after", "cancelled", "left"):
         assert mistaken[case] == [False, []]
@@ -166,6 +181,8 @@ def test_german_is_complete_and_used(screen, tmp_path):
     found = freecad.window(screen, steps.german)
     assert found["tip"] == "Filmdicke = Dicke des Abstandshalters"
     assert found["stop"] == "Anhalten"
+    assert found["gap"]["0,15 mm"] == found["gap"]["150 µm"] == ""
+    assert "decimal mark of your language is ','" in found["gap"]["0.15 mm"]  # FreeCAD alone reads 15 mm
     assert found["commands"]["LCE_ExampleFace"][0] == "Gesicht"
     assert found["commands"]["LCE_Mask"][:2] == [
         "Maske …", "Schreibt die Masken beider Platten für den Laserschreiber",
