@@ -13,6 +13,7 @@ from typing import Any
 
 from lce_workbench import ROOT
 from lce_workbench.app import cells, works
+from lce_workbench.app.objects import prisms_around
 from lce_workbench.app.properties import properties
 from lce_workbench.core.job import PredictionSpec
 
@@ -92,7 +93,8 @@ def bill_of(cell: Any) -> Any:
 
 def table(cell: Any) -> list[tuple[str, ...]]:
     """The contents of the spreadsheet, row by row: head, items, sums."""
-    bodies = {obj.Prisms: obj.Name for obj in works.bodies(cell)}
+    present = {prism.name for prism in prisms_around(cell).parts}
+    bodies = {obj.Prisms: obj.Name for obj in works.bodies(cell) if obj.Prisms in present}
     heating = cells.sections(cell)["prediction"].Name
     items = [(item, [bodies[name] for name in item.prisms if name in bodies]) for item in ITEMS]
     items = [(item, names) for item, names in items if names]

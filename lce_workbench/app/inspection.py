@@ -52,11 +52,9 @@ def placed(cell: Any, obj: Any) -> Any:
 
 def _filled(obj: Any) -> Any:
     """The solid of a body without its holes."""
-    import Part
-
     from lce_workbench.cad.part import solid
 
-    return Part.makeCompound([solid(replace(prism, holes=())) for prism in prisms_of(obj)])
+    return solid([replace(prism, holes=()) for prism in prisms_of(obj)])
 
 
 def marks(cell: Any, job: Job) -> Floats:

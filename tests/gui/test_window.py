@@ -70,8 +70,6 @@ def test_each_step_is_one_undo_step_and_one_python_line(walked):
         "mask",
         "inspect",
         "drawings",
-        "export",
-        "review",
     )
     for call in calls:
         assert f"session.{call}(App.getDocument('Walk')" in walked["console"].replace("\n", "")
