@@ -71,9 +71,19 @@ def design_of(cell: Any) -> Any:
 
 
 def sections(cell: Any) -> dict[str, Any]:
-    """Section of the job -> its object, in the job's order."""
+    """Section of the job -> its object, in the job's order.
+
+    Raises
+    ------
+    InputError
+        One was deleted: its defaults would silently take its place.
+    """
     found = {obj.Section: obj for obj in cell.OutListRecursive if kind_of(obj) == "Parameters"}
-    return {f.name: found[f.name] for f in fields(Job) if f.name in found}
+    lost = ", ".join(f.name for f in fields(Job) if f.name not in found)
+    if lost:
+        msg = f"{cell.Label} has lost its parameters of {lost}; undo their deletion, or start a new cell"
+        raise InputError(msg)
+    return {f.name: found[f.name] for f in fields(Job)}
 
 
 def made_for(design: Any) -> Job:

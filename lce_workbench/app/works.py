@@ -114,11 +114,11 @@ def require_bodies(cell: Any) -> None:
     Raises
     ------
     InputError
-        There are none.
+        There are none, or a part of them was deleted.
     """
     require_design(cell)
-    if not bodies(cell):
-        msg = f"{cell.Label} has no plates yet; run Plates and Spacer first"
+    if not {"bottom_land", "top_land", "sheet"} <= {body.Prisms for body in bodies(cell)}:
+        msg = f"{cell.Label} has no plates, or not all of their parts; run Plates and Spacer first"
         raise InputError(msg)
 
 

@@ -12,7 +12,7 @@ import FreeCADGui
 
 from lce_solver.errors import LceError
 from lce_solver.surfaces import SURFACES
-from lce_solver.types import Stage
+from lce_solver.types import Stage, silent
 from lce_workbench.app import session
 from lce_workbench.app.objects import SECTIONS
 from lce_workbench.app.properties import label, properties
@@ -32,6 +32,7 @@ class Panel:
 
     def __init__(self, step: Step, doc: Any, cell: Any = None, source: Any = None) -> None:
         self.step, self.doc, self.cell, self.source = step, doc, cell, source
+        self.name = doc.Name
         self.former = session.job(cell) if cell else _first(step, source)
         self.running: Running | None = None
         self.closed = False
@@ -212,16 +213,20 @@ class Panel:
     def reject(self) -> bool:
         """Cancel: no trace is left."""
         if self.running is not None:
-            self.running.ended = lambda _: None
+            self.running.ended, self.running.progress = (lambda _: None), silent
             self.running.stop()
-        self.doc.abortTransaction()
+        if not self.gone():
+            self.doc.abortTransaction()
         self.close()
         return True
 
     # What happens meanwhile
 
     def show(self, stage: str, fraction: float) -> None:
-        """Show how far the work is."""
+        """Show how far the work is; it ends with its document."""
+        if self.gone():
+            self.reject()
+            return
         energy = f", {tr('energy')} {stage.energy:.3e}" if isinstance(stage, Stage) else ""
         self.stage.setText(f"{stage}{energy}")
         self.bar.setValue(round(1000 * min(max(fraction, 0.0), 1.0)))
@@ -234,6 +239,9 @@ class Panel:
 
     def ended(self, reason: str, settings: dict[str, Any]) -> None:
         """The work is over: apply it, or say why not."""
+        if self.gone():
+            self.close()
+            return
         self.running = None
         self.progress.setVisible(False)
         self.tell("")
@@ -263,7 +271,7 @@ class Panel:
 
     def lines(self, settings: dict[str, Any], folder: str) -> list[str]:
         """The Python lines that do it."""
-        doc = f"App.getDocument({self.doc.Name!r})"
+        doc = f"App.getDocument({self.name!r})"
         if self.step.new:
             settings = session.changes(Job(), session.job_with(self.former, settings))
             source = f", {_path(doc, self.source)}" if self.source else ""
@@ -286,8 +294,12 @@ class Panel:
             editor.drop()
         self.editors = {}
         FreeCADGui.Control.closeDialog()
-        if self.doc.Name in FreeCAD.listDocuments() and FreeCADGui.getDocument(self.doc.Name):
-            FreeCADGui.getDocument(self.doc.Name).resetEdit()
+        if not self.gone():
+            FreeCADGui.getDocument(self.name).resetEdit()
+
+    def gone(self) -> bool:
+        """Whether the document was closed meanwhile."""
+        return self.name not in FreeCAD.listDocuments()
 
 
 def _widen(width: int) -> None:
