@@ -199,12 +199,11 @@ def findings(doc):
     view = FreeCADGui.getDocument(doc.Name).activeView()
     for check in ("body_volume", "stretch_max", "interference"):
         item = next(item for item in items if item.text(1) == check)
-        height = view.getCameraNode().height.getValue()
         table.itemDoubleClicked.emit(item, 0)
         pump(0.3)
         marked = sum(child.getName().getString() == "lce_findings" for child in view.getSceneGraph().getChildren())
         names = [obj.Name for obj in FreeCADGui.Selection.getSelection()]
-        found[check] = [names, marked, view.getCameraNode().height.getValue() / height]
+        found[check] = [names, marked, view.getCameraNode().height.getValue()]
     return found
 
 
@@ -463,3 +462,40 @@ def anywhere():
     from lce_workbench.gui.qt import QtCore
 
     return QtCore.Qt.MatchExactly | QtCore.Qt.MatchRecursive
+
+
+def whole(mesh, folder, pictures=""):
+    """From a mesh to all files, as a user takes the steps."""
+    import FreeCAD
+    import FreeCADGui
+    import Mesh
+
+    activate()
+    doc = FreeCAD.newDocument("Whole")
+    Mesh.insert(mesh, doc.Name)
+    FreeCADGui.Selection.addSelection(doc.Objects[0])
+    for number, (name, fill) in enumerate(
+        {
+            "NewCell": {"sheet.width_mm": "2 mm", "domains.size_um": "400 um"},
+            "Design": {},
+            "Predict": {},
+            "Plates": {},
+            "Mask": {"folder": folder, "output.masks": "gds"},
+            "Drawings": None,
+            "Inspect": None,
+            "Export": {"folder": folder},
+            "Review": {"folder": folder},
+        }.items(),
+        start=1,
+    ):
+        run(name)
+        if fill is not None:
+            for field, text in fill.items():
+                write(field, text)
+            assert press("Ok"), widget("reason").text()
+            until(lambda: not is_open(), 600)
+        FreeCADGui.Selection.clearSelection()
+        picture(pictures, f"{number}_{name}")
+    rows = widget("lce_findings").widget().topLevelItemCount()
+    statuses = {o.Label: o.Status for o in doc.Objects if "MadeFor" in o.PropertiesList}
+    return {"statuses": statuses, "folder": doc.Review.Folder, "rows": rows, "errors": doc.Review.Errors}

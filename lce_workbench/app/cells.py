@@ -66,8 +66,18 @@ def result(cell: Any, kind: str) -> Any:
 
 
 def design_of(cell: Any) -> Any:
-    """The cell's design object."""
-    return result(cell, "DesignData")
+    """The cell's design object.
+
+    Raises
+    ------
+    InputError
+        It was deleted.
+    """
+    found = result(cell, "DesignData")
+    if found is None:
+        msg = f"{cell.Label} has lost its design; undo its deletion, or start a new cell"
+        raise InputError(msg)
+    return found
 
 
 def sections(cell: Any) -> dict[str, Any]:

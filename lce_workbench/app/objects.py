@@ -207,7 +207,7 @@ def is_fine(shape: Any) -> bool:
 
 def prisms_of(obj: Any) -> list[Prism]:
     """The prisms that a body consists of."""
-    cell = prisms_around(cells.cell_of(obj.Design))
+    cell = prisms_around(cells.cell_of(obj))
     return [prism for prism in (*cell.parts, *cell.channels) if obj.Prisms in {prism.name, prism.group}]
 
 

@@ -13,6 +13,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from lce_solver.errors import InputError
 from lce_workbench.app import cells
 from lce_workbench.app.geometry import domains_of, stored
 from lce_workbench.app.objects import FILES, HIDDEN, READ_ONLY, SECTIONS, Proxy, add, job_of
@@ -128,6 +129,19 @@ class Outcome(Result):
     def setup(self, obj: Any) -> None:
         super().setup(obj)
         add(obj, "App::PropertyLinkGlobal", "Design", "The design that it is made for")
+
+    def execute(self, obj: Any) -> None:
+        """Compare with the parameters.
+
+        Raises
+        ------
+        InputError
+            The design was deleted.
+        """
+        if obj.Design is None:
+            msg = f"{obj.Label} has lost its design; undo its deletion, or start a new cell"
+            raise InputError(msg)
+        super().execute(obj)
 
     def state(self, obj: Any) -> str:
         found = super().state(obj)

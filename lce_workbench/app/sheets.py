@@ -219,7 +219,7 @@ def domain_map(subject: Subject) -> Sheet:
         "LCE film, see design",
         "angles: as domains.csv",
         "A3",
-        (_in(map_views.domain_map(subject), map_views.MAP_ROOM, (190, 165)),),
+        (_in(map_views.domain_map(subject), map_views.MAP_ROOM, (178, 165)),),
         (
             "Seen from above.",
             f"Domains are found in domains.csv {found}.",
