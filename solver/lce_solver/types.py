@@ -23,7 +23,7 @@ Progress = Callable[[str, float], None]
 class Stage(str):
     """A stage's name that also tells the energy that is being minimised."""
 
-    __slots__ = ("energy",)
+    energy: float
 
     def __new__(cls, name: str, energy: float) -> Stage:
         """The name, with the ``energy`` reached."""
