@@ -260,7 +260,8 @@ def test_valid_starts_come_before_good_scores():
 
 def test_progress_runs_to_one_and_can_stop():
     heard = []
-    found, _ = compete(hill(), LCE, starts=2, progress=lambda stage, fraction: heard.append((stage, fraction)))
+    finalists, _ = compete(hill(), LCE, starts=2, progress=lambda stage, fraction: heard.append((stage, fraction)))
+    found = finalists[0].flat
     fractions = [fraction for _, fraction in heard]
     assert fractions == sorted(fractions)
     assert fractions[0] == 0
