@@ -436,6 +436,14 @@ def shown(mesh, pictures):
                 source.ViewObject.Visibility = False
                 view.viewIsometric()
                 FreeCADGui.SendMsgToActiveView("ViewFit")
+        run("Inspect")
+        table = widget("lce_findings").widget()
+        items = [table.topLevelItem(row) for row in range(table.topLevelItemCount())]
+        table.itemDoubleClicked.emit(next(item for item in items if item.text(1) == "stretch_max"), 0)
+        picture(pictures, "9_inspect")
+        widget("lce_findings").hide()
+        view.viewIsometric()
+        FreeCADGui.SendMsgToActiveView("ViewFit")
         doc.SheetParameters.Gap = "150 um"
         doc.recompute()
         expand(window)

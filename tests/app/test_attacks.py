@@ -1,0 +1,39 @@
+"""What careless users do: deleting, renaming, copying, closing, two documents at once."""
+
+import attack_steps as steps
+import pytest
+from freecad_call import FreeCAD
+from processes import ROOT, display
+
+
+@pytest.fixture
+def freecad(tmp_path):
+    return FreeCAD(tmp_path / "home")
+
+
+def test_deleted_objects_are_missed_in_one_sentence_and_come_back(freecad):
+    found = freecad.console(steps.deleted, root=ROOT)  # FreeCAD itself prints what a recompute raises
+    for said in found["SheetParameters"]:
+        assert "has lost its parameters of sheet; undo their deletion" in said[0]
+    assert found["BottomLand"][0] == []
+    assert "not all of their parts; run Plates and Spacer first" in found["BottomLand"][1][0]
+    assert "has lost its design; undo its deletion" in found["Design"][1][0]
+    assert found["again"] == [True, [], 0]
+
+
+def test_copies_and_other_documents_do_not_know_of_each_other(freecad, tmp_path):
+    found = freecad.console(steps.copied, root=ROOT, folder=tmp_path)
+    assert "Traceback" not in freecad.said
+    assert len(found["parts"]) == len(set(found["parts"])) == 5
+    assert found["depths"] == pytest.approx([0.6e-3, 1.4e-3, 2.0e-3])
+    assert found["invalid"] == []
+    assert len(set(found["bills"])) == len(found["bills"])
+
+
+def test_a_document_closed_while_its_panel_works_takes_the_panel_along(freecad):
+    with display() as screen:
+        found = freecad.window(screen, steps.closed, root=ROOT)
+    assert "Traceback" not in freecad.said
+    assert not found["others"]  # one panel at a time
+    assert found["next"] == [True, True, False]
+    assert found["active"]
