@@ -200,7 +200,7 @@ class Quantity(Editor):
 
     def get(self) -> Any:
         text = self.box.findChild(QtWidgets.QLineEdit).text()
-        mark, groups = self.box.locale().decimalPoint(), self.box.locale().groupSeparator()
+        mark, groups = QtCore.QLocale().decimalPoint(), QtCore.QLocale().groupSeparator()
         if re.search(rf"\d{re.escape(groups)}\d", text):
             # FreeCAD passes over it: where thousands are grouped by points, 1.3 mm would be 13 mm.
             msg = f"{self.name} is {text!r}; the decimal mark of your language is {mark!r}, so leave out {groups!r}"
