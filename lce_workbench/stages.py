@@ -103,8 +103,6 @@ def solved(run: Run) -> tuple[Iterator[Design], Findings]:
         tolerance=job.solver.tolerance,
         max_iterations=job.solver.max_iterations,
         smoothing=job.solver.smoothing,
-        edge=job.domains.size,
-        resample=(lambda factor: target.resolve(job, matter, run.base, factor)[0]) if job.target.remesh else None,
         progress=run.progress,
     )
     return plans, (*said, *told)
