@@ -64,7 +64,13 @@ def write_faces(out: Part21, solids: Sequence[Polyhedron], names: Sequence[str] 
     corner = (np.cumsum(sizes) - sizes)[first]
     columns = {"point": point[begin[corner]], "normal": direction[len(a) :], "along": direction[edge[corner]]}
     bounds = [references(each)[1:] for each in np.split(bound, first[1:])]
-    return out.rows(FACE, len(faces), {**columns, "bounds": bounds, "name": names or ""}) + 2
+    made = np.empty(len(faces), dtype=np.int64)
+    for pick in (np.flatnonzero(count == 1), *np.flatnonzero(count > 1)[:, None]):  # rows are padded to the longest
+        if len(pick):
+            texts = {"bounds": [bounds[k] for k in pick], "name": [names[k] for k in pick] if names else ""}
+            rows = {name: column[pick] for name, column in columns.items()}
+            made[pick] = out.rows(FACE, len(pick), {**rows, **texts}) + 2
+    return made
 
 
 def _reals(vectors: Floats) -> dict[str, list[str]]:
