@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from lce_workbench.core.job import Job
 
 DEMO = ROOT / "templates" / "demo.toml"
+TOGETHER = 0.5
+"""Signals closer than this are one [s]."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -56,27 +58,38 @@ def _command(argv: list[str]) -> int:
 
 def guarded(command: Callable[[list[str]], int], argv: list[str]) -> int:
     """Run ``command`` and turn whatever it raises into one sentence and an exit code."""
-    debug = "--debug" in argv
+    heard: list[float] = []
+
+    def interrupt(*_: object) -> None:
+        """Raise; but signals that come together are one: `timeout` sends two, and a library at its import bears one."""
+        heard.append(time.monotonic())
+        if len(heard) == 1 or heard[-1] - heard[-2] > TOGETHER:
+            raise KeyboardInterrupt
+
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, _interrupt)
+        signal.signal(number, interrupt)
     try:
         with needed():
             return command(argv)
-    except LceError as fault:
-        return _fail(str(fault), fault.exit_code, debug=debug)
-    except KeyboardInterrupt:
-        return _fail("interrupted; nothing was changed", 130, debug=debug)
-    except MemoryError:
-        return _fail("out of memory; take larger domains or a smaller sheet", 4, debug=debug)
-    except OSError as fault:
-        return _fail(f"{fault.filename or 'a file'}: {fault.strerror or fault}", 4, debug=debug)
-    except Exception as fault:
-        sentence = f"internal fault ({type(fault).__name__}: {fault}); run with --debug and report it"
-        return _fail(sentence, 4, debug=debug)
+    except (Exception, KeyboardInterrupt) as fault:
+        # What a library makes of a signal while it is imported is an interruption too.
+        sentence, code = _told(KeyboardInterrupt() if heard else fault)
+        return _fail(sentence, code, debug="--debug" in argv)
 
 
-def _interrupt(*_: object) -> NoReturn:
-    raise KeyboardInterrupt
+def _told(fault: BaseException) -> tuple[str, int]:
+    """The sentence and the exit code of whatever a command raised."""
+    match fault:
+        case LceError():
+            return str(fault), fault.exit_code
+        case KeyboardInterrupt():
+            return "interrupted; nothing was changed", 130
+        case MemoryError():
+            return "out of memory; take larger domains or a smaller sheet", 4
+        case OSError():
+            return f"{fault.filename or 'a file'}: {fault.strerror or fault}", 4
+        case _:
+            return f"internal fault ({type(fault).__name__}: {fault}); run with --debug and report it", 4
 
 
 def _fail(sentence: str, code: int, *, debug: bool) -> int:
@@ -316,8 +329,9 @@ def _new(args: argparse.Namespace) -> int:
     from lce_workbench.core.job import Job, Target
     from lce_workbench.outputs import told
 
-    target, out = args.target, args.out or args.target.with_suffix(".toml")
+    target = args.target
     surface, findings = load(target, cuts=True)
+    out = args.out or target.with_suffix(".toml")
     cuts = not (boundary_loops(surface.faces) and handles(surface) == 0)
     if out.exists():
         msg = f"{out} exists; choose another name with --out"

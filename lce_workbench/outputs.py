@@ -105,6 +105,13 @@ def _remove(path: Path) -> None:
         path.unlink(missing_ok=True)
 
 
+def _is_output(folder: Path) -> bool:
+    try:
+        return bool(read_manifest(folder))
+    except InputError:
+        return False
+
+
 def _require_ours(out: Path, replaced: Sequence[str] | None) -> None:
     """Refuse to replace files that we did not write, or that somebody changed since."""
     if out.exists() and not out.is_dir():
@@ -112,6 +119,10 @@ def _require_ours(out: Path, replaced: Sequence[str] | None) -> None:
         raise InputError(msg)
     if out.is_mount():
         msg = f"{out} is a mount point, which cannot be replaced whole; choose a folder in it with --out"
+        raise InputError(msg)
+    around = next((parent for parent in out.parents if _is_output(parent)), None)
+    if around:
+        msg = f"{out} lies in the output folder {around}, which would not be whole any more; choose another with --out"
         raise InputError(msg)
     if not out.is_dir() or not any(out.iterdir()):
         return

@@ -35,6 +35,7 @@ from lce_workbench.core.replication import replicated
 from lce_workbench.core.sampling import as_made
 from lce_workbench.core.units import UM
 from lce_workbench.core.weight import loaded
+from lce_workbench.core.workshop import require_room
 from lce_workbench.divided import arrays, read_domains
 from lce_workbench.export.film import write_film
 from lce_workbench.export.outlines import OUTLINES
@@ -78,7 +79,7 @@ def run_design(run: Run) -> Findings:
     else:
         result, told = arriving(plans, job.prediction.correct, job.sheet.twist_limit, run.progress)
         said = (*renewed((*said, *result.findings), result, job.sheet.twist_limit), told)
-    arrange(result.uv, job)  # a plate that is too small is told before anything is drawn
+    require_room(arrange(result.uv, job), job)  # a plate that is too small is told before anything is drawn
     (run.folder / "job.toml").write_text(jobfile.dump(rebased(job, run.base, run.folder)), encoding="utf-8")
     domains, divided = divide(result, job)
     plain = job.domains.kind == "triangles" and not job.channels.align_phase

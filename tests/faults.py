@@ -37,10 +37,12 @@ BAD_JOBS = {
     "400 digits": (FACE + f"[sheet]\nwidth_mm = {'9' * 400}\n", "sheet.width_mm is inf; give a finite number"),
     "400 digits of a count": (FACE + f"[solver]\nstarts = {'9' * 400}\n", "solver.starts is inf; give a finite number"),
     "5000 digits": (FACE + f"[sheet]\nwidth_mm = {'9' * 5000}\n", "is not valid TOML"),
-    "no target": ("[sheet]\nwidth_mm = 20\n", "give either target.mesh"),
-    "two targets": ('[target]\nsurface = "face"\nmesh = "a.stl"\n', "give either target.mesh"),
+    "no target": ("[sheet]\nwidth_mm = 20\n", "there is no target"),
+    "two targets": ('[target]\nsurface = "face"\nmesh = "a.stl"\n', "are both given"),
     "unknown choice": ('[target]\nmesh = "a.stl"\nsubdivision = "cubic"\n', "choose one of loop, midpoint"),
     "list of other things": (FACE + "[output]\nstep_domains = [1.5]\n", "each item is a whole number"),
+    "nested deeply": (FACE + f"[sheet]\nwidth_mm = {'[' * 3000}{']' * 3000}\n", "is not valid TOML"),
+    "a relief of many pixels": (FACE + "[output]\nrelief = true\nrelief_pixel_nm = 1\n", "9e+08 pixels"),
     "not TOML": ("[target\n", "is not valid TOML"),
 }
 

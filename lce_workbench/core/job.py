@@ -270,6 +270,10 @@ class PredictionSpec:
     film: bool = param(False, "write the heating as an animation, prediction_film.glb")
 
 
+RELIEF_UM = 30.0
+"""Side of the relief's window where none is given."""
+
+
 @dataclass(frozen=True)
 class Output:
     """What is written."""

@@ -13,7 +13,7 @@ from types import NoneType, UnionType
 from typing import Any, get_args, get_type_hints
 
 from lce_solver.errors import InputError
-from lce_workbench.core.job import Job
+from lce_workbench.core.job import RELIEF_UM, Job
 
 Section = Any
 """One of the frozen dataclasses of `core.job`."""
@@ -40,11 +40,15 @@ def load(path: Path, settings: Iterable[str] = ()) -> Job:
     return parse(text, str(path), settings)
 
 
+RELIEF_PIXELS = 25e6
+"""More take minutes and gigabytes."""
+
+
 def parse(text: str, name: str = "job", settings: Iterable[str] = ()) -> Job:
     """Turn TOML text into a checked `Job`; ``name`` is used in messages."""
     try:
         table = tomllib.loads(text)
-    except ValueError as fault:  # not only TOMLDecodeError: Python refuses integers of thousands of digits
+    except (ValueError, RecursionError) as fault:  # Python refuses integers of thousands of digits, and deep nesting
         msg = f"{name} is not valid TOML: {fault}"
         raise InputError(msg) from None
     for setting in settings:
@@ -157,7 +161,7 @@ def _apply(table: dict[str, Any], setting: str) -> None:
         raise InputError(msg)
     try:
         value = tomllib.loads(f"v = {raw.strip()}")["v"]
-    except ValueError:
+    except (ValueError, RecursionError):
         value = raw.strip()
     part = table.setdefault(section, {})
     if isinstance(part, dict):
@@ -186,8 +190,10 @@ def _given(job: Job) -> list[bool]:
 
 
 def _target_fault(job: Job) -> str:
-    if bool(job.target.mesh) == bool(job.target.surface):
-        return 'give either target.mesh = "file" or target.surface = "face", and not both'
+    if job.target.mesh and job.target.surface:
+        return "target.mesh and target.surface are both given; keep one of them"
+    if not job.target.mesh and not job.target.surface:
+        return 'there is no target; give target.mesh = "file" or target.surface = "face"'
     return ""
 
 
@@ -226,7 +232,19 @@ def _size_fault(job: Job) -> str:
     return ""
 
 
-CONTRADICTIONS: tuple[Callable[[Job], str], ...] = (_target_fault, _material_fault, _size_fault)
+def _relief_fault(job: Job) -> str:
+    output = job.output
+    x0, y0, x1, y1 = output.step_window_um or (0.0, 0.0, RELIEF_UM, RELIEF_UM)
+    pixels = abs((x1 - x0) * (y1 - y0)) * 1e6 / output.relief_pixel_nm**2
+    if output.relief and pixels > RELIEF_PIXELS:
+        return (
+            f"the relief would have {pixels:.2g} pixels, more than {RELIEF_PIXELS:.0e}; make output.relief_pixel_nm "
+            "larger or output.step_window_um smaller"
+        )
+    return ""
+
+
+CONTRADICTIONS: tuple[Callable[[Job], str], ...] = (_target_fault, _material_fault, _size_fault, _relief_fault)
 """Each says what is wrong, or nothing."""
 
 

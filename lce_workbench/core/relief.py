@@ -16,7 +16,7 @@ from scipy.special import erf
 from lce_solver.types import Floats
 from lce_workbench.core.channels import Channels
 from lce_workbench.core.frame import Rect
-from lce_workbench.core.job import Output
+from lce_workbench.core.job import RELIEF_UM, Output
 from lce_workbench.core.units import NM, UM
 
 REACH = 6.0
@@ -98,4 +98,4 @@ def window_of(output: Output, centre: Floats) -> Rect:
         (x0, y0), (x1, y1) = np.sort(np.array(output.step_window_um).reshape(2, 2), axis=0) * UM
         return Rect(float(x0), float(y0), float(x1), float(y1))
     x, y = centre.tolist()
-    return Rect(x, y, x, y).grown(15 * UM, 15 * UM)
+    return Rect(x, y, x, y).grown(RELIEF_UM * UM / 2, RELIEF_UM * UM / 2)

@@ -25,19 +25,15 @@ COARSE = 0.08
 """Edge of the trial mesh of a shipped surface, as a fraction of its size; enough to know the sheet's scale."""
 
 
-def resolve(job: Job, material: Material, base: Path, factor: float = 1.0) -> tuple[Surface, tuple[Finding, ...]]:
+def resolve(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Finding, ...]]:
     """The target, its triangles about the size of the domains on the flat sheet (in the target's own unit).
-
-    Parameters
-    ----------
-    factor : by which edges shall be longer than a trial says, if the target is resampled.
 
     Raises
     ------
     InputError
         The mesh is not usable, or the surface's name is unknown.
     """
-    surface, found = _shipped(job, material, factor) if job.target.surface else _meshed(job, material, base, factor)
+    surface, found = _shipped(job, material) if job.target.surface else _meshed(job, material, base)
     return (turned(surface) if job.target.flip else surface), found
 
 
@@ -65,12 +61,12 @@ def _surface(name: str) -> Callable[[float], Surface]:
     return SURFACES[name]
 
 
-def _shipped(job: Job, material: Material, factor: float) -> tuple[Surface, tuple[Finding, ...]]:
+def _shipped(job: Job, material: Material) -> tuple[Surface, tuple[Finding, ...]]:
     shape = _surface(job.target.surface)
     coarse = shape(COARSE)
     cuts = _cuts(coarse, job, material)
     coarse = opened(coarse, cuts)
-    edge = factor * job.domains.size / (flat_edge(coarse, job, material) / mean_edge(coarse))
+    edge = job.domains.size / (flat_edge(coarse, job, material) / mean_edge(coarse))
     _require_budget(coarse, edge)
     fine = even_mesh(shape(edge), edge) if job.target.remesh else shape(edge)
     return opened(fine, cuts, straight=job.target.remesh), ()
@@ -80,10 +76,10 @@ def _cuts(trial: Surface, job: Job, material: Material) -> tuple[Floats, ...]:
     return proposed(trial, material) if job.target.cuts else ()
 
 
-def _meshed(job: Job, material: Material, base: Path, factor: float) -> tuple[Surface, tuple[Finding, ...]]:
+def _meshed(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Finding, ...]]:
     surface, found = load(base / job.target.mesh, cuts=job.target.cuts)
     if job.target.remesh:
-        return _resampled(surface, job, material, factor), found
+        return _resampled(surface, job, material), found
     surface = opened(surface, _cuts(surface, job, material))
     size, flat = job.domains.size, flat_edge(surface, job, material)
     if flat <= size:
@@ -97,11 +93,11 @@ def _meshed(job: Job, material: Material, base: Path, factor: float) -> tuple[Su
     return fine, (*found, Finding("subdivided", Severity.INFO, text, flat * 1e3, job.domains.size_um, "um"))
 
 
-def _resampled(surface: Surface, job: Job, material: Material, factor: float) -> Surface:
+def _resampled(surface: Surface, job: Job, material: Material) -> Surface:
     """Even triangles of the domains' size, whatever the input's: a trial with about `TRIAL` of them gives the scale."""
     coarse = _even(surface)
     cuts = _cuts(coarse, job, material)
-    edge = factor * job.domains.size * mean_edge(coarse) / flat_edge(opened(coarse, cuts), job, material)
+    edge = job.domains.size * mean_edge(coarse) / flat_edge(opened(coarse, cuts), job, material)
     _require_budget(surface, edge)
     return opened(even_mesh(surface, edge), cuts, straight=True)
 

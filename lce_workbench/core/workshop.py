@@ -82,6 +82,19 @@ def release(frame: Frame, job: Job) -> float:
     return back
 
 
+def require_room(frame: Frame, job: Job) -> None:
+    """Refuse a notch, a taper, a chamfer or letters that do not fit, before anything is drawn.
+
+    Raises
+    ------
+    InputError
+        As `carrier`, `release` and `glass_levels`.
+    """
+    carrier(frame, job, "bottom")
+    release(frame, job)
+    glass_levels(job)
+
+
 def glass_levels(job: Job) -> list[tuple[float, float, float, float, bool]]:
     """Layers of the glass from inside: both depths below the outer face, inset at each, and whether it is engraved.
 

@@ -10,9 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lce_solver.descent import start
 from lce_solver.levels import levels
-from lce_solver.metric import DEFAULT, Stop, as_complex, lay_flat
+from lce_solver.metric import DEFAULT, Stop, lay_flat
 from lce_solver.runner import Mesh, Report, Runner, advanced, anew, finer_mesh, first_mesh, moved, starting
 from lce_solver.types import Flattening, Material, Progress, Stage, Start, Surface, silent
 
@@ -96,18 +95,6 @@ def compete(
     left = [best, *(runner for runner in others if _faults(runner.start) == 0)]
     finalists = tuple(Finalist(runner.start, mesh.flattening(runner.found)) for runner in left)
     return finalists, _all_starts(records, starts, mirrored)
-
-
-def transferred(
-    one: Finalist, surface: Surface, other: Surface, material: Material, stop: Stop, *, smoothing: float
-) -> Finalist:
-    """The finalist on another mesh of the target, without a new competition."""
-    coarse, fine = finer_mesh(surface, material), finer_mesh(other, material)
-    runner = Runner(one.start, start(as_complex(one.flat.uv)))
-    (runner,) = _next_mesh(coarse, fine, [runner], stop, smoothing=smoothing, report=_unheard)
-    runner = replace(runner, found=start(runner.found.x))
-    (runner,) = advanced(fine, [runner], smoothing, stop, _unheard, last=True)
-    return Finalist(runner.start, fine.flattening(runner.found))
 
 
 def _first_rounds(

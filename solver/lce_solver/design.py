@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -11,37 +11,21 @@ import numpy as np
 from lce_solver import judge
 from lce_solver.assess import assess
 from lce_solver.bounded import FOLLOWED, cost, retwisted
-from lce_solver.contest import Finalist, compete, transferred
+from lce_solver.contest import Finalist, compete
 from lce_solver.errors import InputError
 from lce_solver.family import steer
 from lce_solver.feasible import bounded
 from lce_solver.geometry import area_vectors, face_areas
 from lce_solver.metric import Stop
-from lce_solver.plane import long_side_along_x, rectangle_angles, turn
+from lce_solver.plane import rectangle_angles, turn
 from lce_solver.twist import bending_left, second_form
-from lce_solver.types import (
-    Design,
-    Finding,
-    Flattening,
-    Floats,
-    Ints,
-    Material,
-    Progress,
-    Status,
-    Surface,
-    line_angle,
-    silent,
-)
-
-Resample = Callable[[float], Surface]
+from lce_solver.types import Design, Finding, Flattening, Floats, Material, Progress, Surface, line_angle, silent
 
 SMOOTHING = 0.002
 """Takes the worst jumps of the director for no error of the stretches to speak of. Ten times as much halves the jumps
 on a real face, but the sheet then ends farther from it."""
 SAME = 1e-3
 """Finalists whose scores differ by less than this part are one solution."""
-OFF = 0.05
-"""A mesh whose edges on the sheet are off the wanted ones by more than this part is made anew."""
 SIDEWAYS = 0.1
 """If less than this of the x axis is seen along the mean normal, the y axis points right instead."""
 
@@ -65,8 +49,6 @@ def designs(
     tolerance: float = 1e-8,
     max_iterations: int = 5000,
     smoothing: float = SMOOTHING,
-    edge: float = 0.0,
-    resample: Resample | None = None,
     progress: Progress = silent,
 ) -> Iterator[Design]:
     """Design the flat sheet that heats into ``surface``: one of each finalist of the competition, the best first.
@@ -85,8 +67,6 @@ def designs(
     twist_limit : largest twist either way; what is beyond is cut off [rad].
     starts : number of directions of the first stretch that compete.
     smoothing : weight of the squared `smoothness.jumps` between triangles against the error of the stretches.
-    edge : mean edge of the triangles on the sheet that is wanted [mm]; ``resample`` makes it so.
-    resample : the target's mesh with edges so many times as long; how large the sheet is shows when it is solved.
 
     Raises
     ------
@@ -100,17 +80,9 @@ def designs(
     stop = Stop(tolerance, max_iterations)
     finalists, competed = compete(surface, material, starts, stop, progress, smoothing=smoothing)
     for one in _distinct(finalists):
-        steered = replace(one, flat=steer(surface, one.flat, material, stop, smoothing=smoothing))
-        mesh, made = surface, steered
-        if resample and steered.flat.status is Status.CONVERGED:
-            factor = edge / flat_edge(steered.flat.uv, surface.faces, width)
-            mesh, made = _resized(
-                surface, steered, material, stop, factor=factor, resample=resample, smoothing=smoothing
-            )
-        plan = _laid(mesh, made.flat, material, width, thickness)
-        records = tuple(
-            replace(made.start, winner=True) if start.angle == one.start.angle else start for start in competed
-        )
+        flat = steer(surface, one.flat, material, stop, smoothing=smoothing)
+        plan = _laid(surface, flat, material, width, thickness)
+        records = tuple(replace(start, winner=start.angle == one.start.angle) for start in competed)
         form = second_form(plan.surface, plan.uv)
         plan = retwisted(
             replace(plan, starts=records),
@@ -124,26 +96,6 @@ def designs(
         yield replace(plan, findings=measured(plan, form, twist_limit))
 
 
-def _resized(
-    surface: Surface,
-    one: Finalist,
-    material: Material,
-    stop: Stop,
-    *,
-    factor: float,
-    resample: Resample,
-    smoothing: float,
-) -> tuple[Surface, Finalist]:
-    """The mesh with edges ``factor`` times as long and the finalist on it; both as they were if that is close to 1."""
-    if abs(factor - 1) <= OFF:
-        return surface, one
-    mesh = resample(factor)
-    moved = transferred(one, surface, mesh, material, stop, smoothing=smoothing)
-    if moved.flat.status is not Status.CONVERGED:  # rather domains of another size than a sheet with a fold
-        return surface, one
-    return mesh, replace(moved, flat=steer(mesh, moved.flat, material, stop, smoothing=smoothing))
-
-
 def _distinct(finalists: tuple[Finalist, ...]) -> list[Finalist]:
     """Without those that are the same solution as a better one."""
     kept: list[Finalist] = []
@@ -151,12 +103,6 @@ def _distinct(finalists: tuple[Finalist, ...]) -> list[Finalist]:
         if all(abs(one.start.score - other.start.score) > SAME * other.start.score for other in kept):
             kept.append(one)
     return kept
-
-
-def flat_edge(uv: Floats, faces: Ints, width: float) -> float:
-    """Mean edge of a sheet's triangles when the long side of its smallest rectangle is ``width``."""
-    edge = np.linalg.norm(uv[faces] - uv[np.roll(faces, 1, axis=1)], axis=2).mean()
-    return float(edge) * width / float(np.ptp(long_side_along_x(uv)[:, 0]))
 
 
 def _laid(surface: Surface, flat: Flattening, material: Material, width: float, thickness: float) -> Design:

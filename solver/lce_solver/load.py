@@ -65,7 +65,7 @@ def on_plate(sheet: Shell, thickness: float, pull: float) -> Load:
     z = 0 is where the film's middle lies when it is flat. Heating keeps the film's mass. Approximate: no friction, no
     adhesion, and the plate gives way by a `LAYER` each time the pressure grows by the factor e. What a
     load bends is too soft where triangles are irregular, whatever their size: by 2 to 5 % on the mesher's, within 1 %
-    on a lattice, stretched or not, but by 10 to 70 % on a square grid whose diagonals run both ways.
+    on a lattice, stretched or not, but several times more on a square grid whose diagonals run both ways.
     """
     weight = pull * thickness * vertex_areas(sheet)
     return Load(weight, weight, LAYER * thickness)

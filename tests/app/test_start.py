@@ -1,11 +1,14 @@
 """The command line answers at once: what needs no computation loads nothing that computes."""
 
 import os
+import signal
 import subprocess
 import sys
 
 import pytest
 from processes import ROOT
+
+from lce_workbench.cli import guarded, main
 
 HEAVY = {"numpy", "scipy", "igl", "mmgpy", "cadquery", "OCP", "matplotlib", "trimesh", "ezdxf", "dask"}
 
@@ -37,10 +40,26 @@ def test_an_alignment_loads_no_mesh_library_nor_cad_kernel(tmp_path):
 
 
 def test_a_study_s_questions_are_in_its_help(capsys):
-    from lce_workbench.cli import main
     from lce_workbench.core.perturb import STUDIES
 
     with pytest.raises(SystemExit):
         main(["study", "--help"])
     said = capsys.readouterr().out
     assert all(name in said and one.question in said for name, one in STUDIES.items())
+
+
+def test_an_interruption_is_one_whatever_a_library_makes_of_it_and_however_often_it_comes(capsys):
+    def importing(_):
+        try:
+            signal.raise_signal(signal.SIGINT)
+        except KeyboardInterrupt:
+            signal.raise_signal(signal.SIGTERM)  # as `timeout` sends them, one right after the other
+            raise ImportError("initialization failed") from None
+
+    assert guarded(importing, []) == 130
+    assert capsys.readouterr().err == "lce: interrupted; nothing was changed\n"
+
+
+def test_a_folder_is_no_mesh_for_a_new_job(capsys):
+    assert main(["new", "."]) == 2
+    assert "internal" not in capsys.readouterr().err

@@ -3,9 +3,9 @@
 LCE_MESHES=FOLDER python -m pytest tests/benchmarks/test_bench_arrive.py -o addopts=--import-mode=importlib \
     --benchmark-only --benchmark-json=arrive.json
 
-The time is that of the correction; the distances are in the record, in % of the diagonal. Shipped targets are heated
-from ten imperfections of 0.02 thicknesses; ``LCE_MESHES`` may name a folder with further meshes; `deep.DEEP` are
-targets deeper than a hemisphere or with an overhang, here on about 1000 triangles of 0.8 mm.
+The time is that of design and correction; the distances are in the record, in % of the diagonal. Shipped targets are
+heated from ten imperfections of 0.02 thicknesses; ``LCE_MESHES`` may name a folder with further meshes; `deep.DEEP`
+are targets deeper than a hemisphere or with an overhang, here on about 1000 triangles of 0.8 mm.
 """
 
 import os
@@ -15,9 +15,9 @@ from pathlib import Path
 import pytest
 from deep import DEEP
 
-from lce_solver.arrive import arrive
+from lce_solver.choice import arriving
 from lce_solver.compare import compare
-from lce_solver.design import design
+from lce_solver.design import designs
 from lce_solver.shell import film_of, predict
 from lce_solver.types import Material
 from lce_workbench.core import jobfile, material, target
@@ -37,8 +37,8 @@ def corrected(benchmark, job, base):
     """The design of a job, corrected as `build` does it, and what that says."""
     matter, _ = material.resolve(job.material, base)
     goal, _ = target.resolve(job, matter, base)
-    plan = design(goal, matter, width=job.sheet.width_mm, **job.sheet.twist)
-    made, said = benchmark.pedantic(arrive, (plan, job.prediction.correct, job.sheet.twist_limit), rounds=1)
+    plans = designs(goal, matter, width=job.sheet.width_mm, **job.sheet.twist)
+    made, said = benchmark.pedantic(arriving, (plans, job.prediction.correct, job.sheet.twist_limit), rounds=1)
     benchmark.extra_info.update(triangles=len(made.theta), said=said.message)
     return made, said
 
@@ -68,8 +68,8 @@ def test_meshes(benchmark, name):
 @pytest.mark.parametrize(("name", "lambda_"), REACHED.items())
 def test_deep(benchmark, name, lambda_):
     limit = Job().sheet.twist_limit
-    plan = design(DEEP[name](0.07), Material(lambda_, 0.5), 20.0, 0.1, twist_limit=limit)
-    made, said = benchmark.pedantic(arrive, (plan, "full", limit), rounds=1)
+    plans = designs(DEEP[name](0.07), Material(lambda_, 0.5), 20.0, 0.1, twist_limit=limit)
+    made, said = benchmark.pedantic(arriving, (plans, "full", limit), rounds=1)
     judged = compare(made, predict(film_of(made), seed=2))
     benchmark.extra_info.update(triangles=len(made.theta), rms_pct=judged.rms_pct, said=said.message)
     if name in MISSED:

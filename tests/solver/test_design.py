@@ -8,10 +8,9 @@ from targets import LCE, flat, hill, line_difference, mirrored, moved, patch, ra
 
 from lce_solver import judge
 from lce_solver.assess import rough, solved, stretched, twisted
-from lce_solver.design import design, flat_edge
+from lce_solver.design import design
 from lce_solver.errors import InputError
 from lce_solver.geometry import face_areas
-from lce_solver.mirror import even_mesh
 from lce_solver.surfaces import SURFACES
 from lce_solver.types import Material, Severity, Status
 
@@ -245,20 +244,3 @@ def test_director_jump_is_the_turn_across_edges(plan):
     theta[77] += np.radians(80)
     assert rough(replace(plan, theta=theta)).value > rough(plan).value + 40
     assert rough(replace(plan, theta=plan.theta + np.pi)).value == pytest.approx(rough(plan).value)
-
-
-def test_a_mesh_of_the_wrong_size_is_made_anew_and_keeps_its_solution():
-    def resample(factor):
-        return even_mesh(SURFACES["leaf"](0.03), 0.07 * factor)
-
-    how = {"starts": 3, "tolerance": 1e-6}
-    plan = design(resample(1), LCE, 20.0, 0.1, **how)
-    edge = flat_edge(plan.uv, plan.surface.faces, 20.0)
-    same = design(resample(1), LCE, 20.0, 0.1, edge=1.02 * edge, resample=resample, **how)
-    np.testing.assert_array_equal(same.theta, plan.theta)
-    other = design(resample(1), LCE, 20.0, 0.1, edge=1.4 * edge, resample=resample, **how)
-    assert flat_edge(other.uv, other.surface.faces, 20.0) == pytest.approx(1.4 * edge, rel=0.05)
-    np.testing.assert_allclose(np.ptp(other.uv, axis=0), np.ptp(plan.uv, axis=0), rtol=0.08)
-    winners = [[start for start in one.starts if start.winner] for one in (plan, other)]
-    assert winners[0][0].angle == winners[1][0].angle
-    assert [start.triangles for (start,) in winners] == [len(plan.theta), len(other.theta)]
