@@ -238,7 +238,7 @@ def _relief_fault(job: Job) -> str:
     pixels = abs((x1 - x0) * (y1 - y0)) * 1e6 / output.relief_pixel_nm**2
     if output.relief and pixels > RELIEF_PIXELS:
         return (
-            f"the relief would have {pixels:.2g} pixels, more than {RELIEF_PIXELS:.0e}; make output.relief_pixel_nm "
+            f"the relief would have {pixels:.2g} pixels, more than {RELIEF_PIXELS:.2g}; make output.relief_pixel_nm "
             "larger or output.step_window_um smaller"
         )
     return ""
