@@ -31,6 +31,10 @@ TOGETHER = 0.5
 """Signals closer than this are one [s]."""
 
 
+class Interrupted(KeyboardInterrupt):
+    """A signal. A plain `KeyboardInterrupt` in code that a library's import executes makes Python end by SIGINT."""
+
+
 class Parser(argparse.ArgumentParser):
     """Usage faults are one sentence and exit code 2."""
 
@@ -64,7 +68,7 @@ def guarded(command: Callable[[list[str]], int], argv: list[str]) -> int:
         """Raise; but signals that come together are one: `timeout` sends two, and a library at its import bears one."""
         heard.append(time.monotonic())
         if len(heard) == 1 or heard[-1] - heard[-2] > TOGETHER:
-            raise KeyboardInterrupt
+            raise Interrupted
 
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, interrupt)

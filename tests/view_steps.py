@@ -15,7 +15,7 @@ def opened(folder, *, plates=True):
     from lce_workbench import packages
 
     packages.append()
-    from lce_workbench.app import document, session
+    from lce_workbench.app import document
     from lce_workbench.core import jobfile
 
     folder = Path(folder)
@@ -32,7 +32,7 @@ def opened(folder, *, plates=True):
         heating = document.add_result(cell, "Prediction")
         heating.File = str(folder / "prediction.npz")
         heating.Proxy.remember(heating)
-        session._recompute(cell)
+        doc.recompute()
     doc.clearUndos()
     assert all(obj.isValid() for obj in doc.Objects), [(o.Name, o.getStatusString()) for o in doc.Objects]
     return cell

@@ -100,7 +100,7 @@ def test_the_studies_of_the_folder_are_figures_on_page_and_paper(plain):
     assert main(["review", str(plain), "--quiet"]) == 0
     assert any("lce study NAME" in line and "misalignment" in line for line in report(plain)["left_out"])
     assert 'id="fig-study-twist"' not in (plain / "report.html").read_text(encoding="utf-8")
-    assert main(["study", "twist", str(plain), "--samples", "5", "--quiet"]) == 0
+    assert main(["study", "twist", str(plain), "--samples", "6", "--quiet"]) == 0
     assert main(["review", str(plain), "--quiet"]) == 0
     record = report(plain)
     jsonschema.validate(record, SCHEMA)
