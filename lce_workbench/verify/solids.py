@@ -161,7 +161,7 @@ def _inside(shape: Any, kind: Any) -> Iterator[Any]:
         explorer.Next()
 
 
-STATEMENT = re.compile(rb"=(MAPPED_ITEM|NEXT_ASSEMBLY_USAGE_OCCURRENCE|PRODUCT|END-ISO)\((?:'([^']*)')?")
+STATEMENT = re.compile(rb"=(MAPPED_ITEM|NEXT_ASSEMBLY_USAGE_OCCURRENCE|PRODUCT)\((?:'([^']*)')?")
 
 
 def counted(path: Path) -> tuple[int, list[str]]:
@@ -172,7 +172,7 @@ def counted(path: Path) -> tuple[int, list[str]]:
     Unreadable
         It is missing or damaged.
     """
-    names, placed, mapped = [], 0, 0
+    names, placed, mapped, line = [], 0, 0, b""
     with reading(), gzip.open(path) if path.suffix == ".gz" else path.open("rb") as file:
         for line in file:
             hit = STATEMENT.search(line)
@@ -180,5 +180,8 @@ def counted(path: Path) -> tuple[int, list[str]]:
                 names.append((hit[2] or b"").decode("ascii", "replace"))
             elif hit:
                 mapped, placed = mapped + (hit[1] == b"MAPPED_ITEM"), placed + (hit[1] != b"MAPPED_ITEM")
+    if line.strip() != b"END-ISO-10303-21;":
+        msg = "it breaks off before its end; write it again"
+        raise Unreadable(msg)
     domains = [name for name in names if name.startswith("domain_")]
     return mapped or placed - len(domains), domains
