@@ -70,22 +70,22 @@ def closed(root):
     """A document is closed while its panel works; another one is open."""
     import FreeCAD
     import FreeCADGui
-    import gui_steps
+    import gui_hands
 
     from lce_workbench.app import session
 
-    gui_steps.activate()
+    gui_hands.activate()
     kept, doc = opened(root), FreeCAD.newDocument("Closed")
     doc.UndoMode = 1
     session.new_cell(doc, {"target.surface": "face"})
-    gui_steps.run("Design")
-    gui_steps.press("Ok")
-    gui_steps.until(lambda: "energy" in gui_steps.widget("stage").text())
+    gui_hands.run("Design")
+    gui_hands.press("Ok")
+    gui_hands.until(lambda: "energy" in gui_hands.widget("stage").text())
     FreeCAD.setActiveDocument(kept.Name)
     found = {"others": FreeCADGui.isCommandActive("LCE_Plates")}
     FreeCAD.closeDocument("Closed")
-    gui_steps.until(lambda: not gui_steps.is_open(), 20)
-    gui_steps.run("Plates")
-    found["next"] = [gui_steps.is_open(), gui_steps.press("Ok"), gui_steps.is_open()]
+    gui_hands.until(lambda: not gui_hands.is_open(), 20)
+    gui_hands.run("Plates")
+    found["next"] = [gui_hands.is_open(), gui_hands.press("Ok"), gui_hands.is_open()]
     found["active"] = FreeCAD.ActiveDocument.Name == kept.Name
     return found

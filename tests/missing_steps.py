@@ -77,18 +77,18 @@ def window(folder):
     import os
 
     import FreeCAD
-    import gui_steps
+    import gui_hands
 
-    gui_steps.activate()
-    found = {"commands": len(gui_steps.described()), "home": os.access(FreeCAD.getUserAppDataDir(), os.W_OK)}
-    gui_steps.run("ExampleDome")
+    gui_hands.activate()
+    found = {"commands": len(gui_hands.described()), "home": os.access(FreeCAD.getUserAppDataDir(), os.W_OK)}
+    gui_hands.run("ExampleDome")
     doc = FreeCAD.ActiveDocument
-    former = gui_steps.state(doc)
-    gui_steps.run("Design")
-    found["design"] = [gui_steps.press("Ok"), gui_steps.is_open(), gui_steps.widget("reason").text()]
-    gui_steps.press("Cancel")
-    found["changed"] = gui_steps.differences(former, gui_steps.state(doc))
-    gui_steps.run("Inspect")
+    former = gui_hands.state(doc)
+    gui_hands.run("Design")
+    found["design"] = [gui_hands.press("Ok"), gui_hands.is_open(), gui_hands.widget("reason").text()]
+    gui_hands.press("Cancel")
+    found["changed"] = gui_hands.differences(former, gui_hands.state(doc))
+    gui_hands.run("Inspect")
     found["refused"] = FreeCAD.ActiveDocument.Review.Status
     doc.saveAs(f"{folder}/saved.FCStd")
     return found

@@ -5,7 +5,7 @@ import zipfile
 from pathlib import Path
 
 import numpy as np
-from gui_steps import activate, console, fingerprint, pump, run, widget
+from gui_hands import activate, console, fingerprint, pump, run, widget
 
 
 def opened(folder, *, plates=True):
@@ -305,7 +305,7 @@ def panel(cell):
     found = widget("output.step_domains").text()
     looks_on = FreeCADGui.isCommandActive("LCE_ShowTarget")
 
-    from gui_steps import press
+    from gui_hands import press
 
     press("Cancel")
     return found, looks_on
@@ -385,56 +385,3 @@ def drawn(view):
     for _ in range(3):
         FreeCADGui.updateGui()
         time.sleep(0.02)
-
-
-def shown(folder, pictures):
-    """A picture of each state of the view, for the documentation; ``folder`` is an output folder."""
-    import FreeCAD
-    import FreeCADGui
-    from gui_steps import expand, picture
-
-    from lce_workbench.gui.qt import QtCore, QtWidgets
-
-    look = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/View")
-    look.SetBool("Gradient", False)
-    look.SetBool("Simple", True)
-    look.SetUnsigned("BackgroundColor", 0xE3E8EEFF)
-    window = FreeCADGui.getMainWindow()
-    window.showMaximized()
-    activate()
-    cell = opened(folder)
-    from lce_workbench.gui import scene
-
-    for dock in window.findChildren(QtWidgets.QDockWidget):
-        if dock.objectName() in {"Report view", "Python console"}:
-            dock.hide()
-    expand(window)
-    view = scene.of(cell).view
-    view.viewIsometric()
-    view.fitAll()
-    for number, name in enumerate(list(PICTURES.values())[:-1], start=1):  # both plates look alike
-        run(name)
-        picture(pictures, f"view_{number}_{name[4:]}")
-    run("ShowCell")
-    run("Explode")
-    picture(pictures, "view_6_exploded")
-    run("Explode")
-    run("Section")
-    picture(pictures, "view_7_section")
-    run("Section")
-    run("ShowDirectors")
-    run("Domains")
-    dock = window.findChild(QtWidgets.QDockWidget, "lce_domains")
-    window.resizeDocks([dock], [420], QtCore.Qt.Horizontal)
-    pump(0.3)
-    middle = scene.of(cell).shown().domains.centroid - [1.0, 2.0]
-    near = np.argsort(np.linalg.norm(middle, axis=1))[:4]
-    scene.mark(cell, near.tolist(), go=True)
-    picture(pictures, "view_8_table")
-    dock.button.click()
-    for obj in cell.OutListRecursive:
-        if hasattr(obj, "Prisms") and not obj.Prisms.startswith("channels_"):
-            obj.ViewObject.Visibility = False
-    view.viewTop()
-    view.fitAll()
-    picture(pictures, "view_9_solids")

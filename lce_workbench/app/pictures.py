@@ -8,13 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lce_solver.errors import EnvironmentFault, InputError
+from lce_solver.errors import InputError
+from lce_solver.topology import edge_table
 from lce_solver.types import Design, Floats, Ints, line_angle
 from lce_workbench.app.colours import Scale
 from lce_workbench.app.skins import Skin
 from lce_workbench.core.channels import ChannelField, Channels, joined
 from lce_workbench.core.domains import Domains, Plate, signed_area
 from lce_workbench.core.job import Job
+from lce_workbench.packages import needed
 
 PALE, INK = (0.93, 0.94, 0.96), (0.20, 0.23, 0.27)
 """Of a sheet without values, and of borders."""
@@ -108,11 +110,8 @@ def deviation(shown: Shown) -> Picture:
     if shown.hot is None:
         msg = "the heating of this design is not simulated yet; run Predict first"
         raise InputError(msg)
-    try:
+    with needed():
         from lce_solver.compare import align, vertex_areas
-    except ImportError as missing:
-        msg = f"{missing.name} is missing in FreeCAD's Python, so shapes cannot be laid on each other; install it"
-        raise EnvironmentFault(msg) from missing
     design, aim = shown.design, shown.design.surface.vertices
     laid = align(shown.hot, aim, vertex_areas(aim, design.surface.faces))
     away = 1000 * laid.distance
@@ -206,9 +205,8 @@ def _rims(skins: tuple[Skin, ...]) -> tuple[Strokes, ...]:
 
 def rim_of(faces: Ints) -> Ints:
     """Vertex pairs (2 n,) of the edges on the border."""
-    sides = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-    edges, counts = np.unique(sides, axis=0, return_counts=True)
-    return edges[counts == 1].ravel()
+    edges, _, count = edge_table(faces)
+    return edges[count == 1].ravel()
 
 
 def _closed(rings: Floats) -> Floats:

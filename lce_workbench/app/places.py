@@ -12,10 +12,11 @@ import numpy as np
 
 from lce_solver.types import Floats
 from lce_workbench.app import cells
-from lce_workbench.app.geometry import domains_of, stored
+from lce_workbench.app.geometry import domains_of
+from lce_workbench.app.inspection import marks
 from lce_workbench.app.objects import job_of
 from lce_workbench.core.domains import SIDE, Domains
-from lce_workbench.core.frame import MARK_BOX, arrange
+from lce_workbench.core.frame import MARK_BOX, Rect
 from lce_workbench.core.job import Job
 
 
@@ -59,8 +60,8 @@ def _rings(cell: Any, job: Job, where: str) -> list[Floats]:
         domains = domains_of(Path(design.File), job, made_for)
         return [domains.ring(k) for k in map(int, named[1].split(", ")) if k < len(domains)]
     if corner := re.search(r"\bcorner (\d+)", where):
-        marks = arrange(stored(Path(design.File), job.sheet, made_for.sheet).uv, job).marks
-        return [_box(marks[int(corner[1])], MARK_BOX)]
+        x, y = marks(cell, job)[int(corner[1])].tolist()
+        return [Rect(x, y, x, y).grown(MARK_BOX / 2, MARK_BOX / 2).ring]
     if at := re.search(r"\bat \((-?[\d.]+), (-?[\d.]+)\) mm", where):
         point = np.array([float(at[1]), float(at[2])])
         return [_ring_at(domains_of(Path(design.File), job, made_for), point)]
@@ -70,7 +71,3 @@ def _rings(cell: Any, job: Job, where: str) -> list[Floats]:
 def _ring_at(domains: Domains, point: Floats) -> Floats:
     """Outline of the domain whose middle is nearest."""
     return domains.ring(int(np.argmin(np.linalg.norm(domains.centroid - point, axis=1))))
-
-
-def _box(middle: Floats, side: float) -> Floats:
-    return middle + side / 2 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])

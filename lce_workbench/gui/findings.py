@@ -7,6 +7,7 @@ from typing import Any
 
 import FreeCAD
 import FreeCADGui
+import numpy as np
 
 from lce_solver.types import Floats
 from lce_workbench.app import cells
@@ -21,6 +22,9 @@ SEVERITIES = {"error": "#c62828", "warning": "#b26a00", "info": "#2e7d32"}
 
 PLACE, MESSAGE = 4, 5
 """Columns."""
+
+MARKED = (0.85, 0.1, 0.1)
+"""Colour of outlines."""
 
 AROUND = 4.0
 """An outline that is jumped to is so many times smaller than the view."""
@@ -95,37 +99,23 @@ def _jump(table: Any, item: Any) -> None:
         return  # a drawing or a table is in front
     _forget(view)
     if place.outlines:
-        _look_at(view, _drawn(cell, place.outlines))
+        _outline(view, cell, place.outlines)
     elif place.objects:
         FreeCADGui.SendMsgToActiveView("ViewSelection")
 
 
-def _drawn(cell: Any, outlines: tuple[Floats, ...]) -> Any:
-    """The outlines as a node of the scene, in front of everything."""
-    from pivy import coin
+def _outline(view: Any, cell: Any, outlines: tuple[Floats, ...]) -> None:
+    """Draw outlines in front of everything, and look at them."""
+    from lce_workbench.gui import camera, nodes
 
-    node = coin.SoAnnotation()
-    node.setName(NAME)
-    colour, pen, points, lines = coin.SoBaseColor(), coin.SoDrawStyle(), coin.SoCoordinate3(), coin.SoLineSet()
-    colour.rgb = (0.85, 0.1, 0.1)
-    pen.lineWidth = 3
     to = cell.getGlobalPlacement()
-    closed = [[tuple(to.multVec(FreeCAD.Vector(*map(float, p)))) for p in (*ring, ring[0])] for ring in outlines]
-    points.point.setValues(0, sum(map(len, closed)), [p for ring in closed for p in ring])
-    lines.numVertices.setValues(0, len(closed), [len(ring) for ring in closed])
-    for part in (colour, pen, points, lines):
-        node.addChild(part)
-    return node
-
-
-def _look_at(view: Any, node: Any) -> None:
-    """Add a node to the scene and bring it into view."""
+    closed = [np.array([to.multVec(FreeCAD.Vector(*p)) for p in (*ring, ring[0])]) for ring in outlines]
+    node = nodes.polylines(closed, MARKED, 3.0)
+    node.setName(NAME)
     view.getSceneGraph().addChild(node)
-    region = view.getViewer().getSoRenderManager().getViewportRegion()
-    camera = view.getCameraNode()
-    camera.viewAll(node, region)
-    if hasattr(camera, "height"):
-        camera.height = camera.height.getValue() * AROUND
+    points = np.concatenate(closed)
+    low, high = points.min(axis=0), points.max(axis=0)
+    camera.look_at(view, (low + high) / 2, AROUND * float(np.linalg.norm(high - low)))
 
 
 def _forget(view: Any) -> None:

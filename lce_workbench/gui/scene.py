@@ -123,7 +123,7 @@ def _with_plates(cell: Any) -> Scene:
     """The scene of a cell that shows the cell itself."""
     works.require_design(cell)
     scene = of(cell)
-    if not scene.bodies():
+    if not works.bodies(cell):
         msg = f"{cell.Label} has no plates yet; run Plates and Spacer first"
         raise InputError(msg)
     if scene.name:

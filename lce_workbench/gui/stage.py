@@ -130,12 +130,8 @@ class Scene:
         design, heating = cells.design_of(self.cell), cells.result(self.cell, "PredictionData")
         job = job_of(cells.sections(self.cell).values())
         files = [cells.digest(obj.File) for obj in (design, heating) if obj is not None]
-        bodies = tuple(obj.Name for obj in self.bodies())
+        bodies = tuple(obj.Name for obj in works.bodies(self.cell))
         return self.name, files, job, bodies
-
-    def bodies(self) -> list[Any]:
-        """The solids of the cell."""
-        return [obj for obj in self.cell.OutListRecursive if cells.kind_of(obj) == "Body"]
 
     def box(self) -> tuple[Floats, Floats]:
         """Corners of the box around a picture [mm]."""
@@ -167,7 +163,7 @@ class Scene:
 
     def take_apart(self, width: float) -> None:
         """Move the bodies along z, as far as parts of plates of this ``width`` [mm] go; 0 puts them together."""
-        for body in self.bodies():
+        for body in works.bodies(self.cell):
             lift, root = self.lifts.setdefault(body.Name, coin.SoTranslation()), body.ViewObject.RootNode
             if root.findChild(lift) < 0:  # a new body, or one that an undo brought back
                 root.insertChild(lift, 0)
@@ -177,7 +173,7 @@ class Scene:
         """Hide what is before the plane at ``y`` [mm], and fill the solids that it goes through."""
         around = prisms_around(self.cell)
         width = self.width() if self.exploded else 0.0
-        names = {body.Prisms for body in self.bodies()}
+        names = {body.Prisms for body in works.bodies(self.cell)}
         pieces, colours = [], []
         for found in cut([p for p in (*around.parts, *around.channels) if names & {p.name, p.group}], y):
             at = np.full((*found.quads.shape[:2], 3), y)

@@ -11,7 +11,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "solver"), str(ROOT / "tests")]
 
-import view_steps  # noqa: E402
+import gui_tour  # noqa: E402
 from freecad_call import FreeCAD  # noqa: E402
 from processes import display  # noqa: E402
 
@@ -26,7 +26,7 @@ if __name__ == "__main__":
     ):
         freecad, results = FreeCAD(Path(folder) / "home"), Path(sys.argv[1]).resolve()
         try:
-            freecad.window(screen, view_steps.shown, folder=str(results), pictures=str(PICTURES))
+            freecad.window(screen, gui_tour.viewed, folder=str(results), pictures=str(PICTURES))
         finally:
             manager.terminate()
     for picture in sorted(PICTURES.glob("view_*.png")):

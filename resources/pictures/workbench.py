@@ -11,7 +11,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "solver"), str(ROOT / "tests")]
 
-import gui_steps  # noqa: E402
+import gui_tour  # noqa: E402
 from freecad_call import FreeCAD  # noqa: E402
 from processes import display  # noqa: E402
 
@@ -27,7 +27,7 @@ if __name__ == "__main__":
     ):
         try:
             freecad = FreeCAD(Path(folder) / "home")
-            freecad.window(screen, gui_steps.shown, mesh=str(Path(sys.argv[1]).resolve()), pictures=str(PICTURES))
+            freecad.window(screen, gui_tour.shown, mesh=str(Path(sys.argv[1]).resolve()), pictures=str(PICTURES))
         finally:
             manager.terminate()
     for picture in sorted(PICTURES.glob("*.png")):

@@ -8,6 +8,7 @@ from enum import Enum
 import numpy as np
 from scipy.spatial import cKDTree
 
+from lce_solver.geometry import shared
 from lce_solver.types import Design, Floats, Ints, Material, Prediction, Status
 
 REACH = 1.0
@@ -143,7 +144,7 @@ def vertex_areas(vertices: Floats, faces: Ints) -> Floats:
     """A third of the areas of the triangles around each vertex, (n_v,)."""
     corners = vertices[faces]
     area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
-    return np.asarray(np.bincount(faces.ravel(), np.repeat(area / 3, 3), minlength=len(vertices)), dtype=np.float64)
+    return shared(area, faces, len(vertices))
 
 
 def residual_strain(uv: Floats, faces: Ints, theta: Floats, material: Material, vertices: Floats) -> float:

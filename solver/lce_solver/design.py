@@ -81,9 +81,8 @@ def designs(
     finalists, competed = compete(surface, material, starts, stop, progress, smoothing=smoothing)
     for one in _distinct(finalists):
         flat = steer(surface, one.flat, material, stop, smoothing=smoothing)
-        plan = _laid(surface, flat, material, width, thickness)
+        plan, form = _laid(surface, flat, material, width, thickness)
         records = tuple(replace(start, winner=start.angle == one.start.angle) for start in competed)
-        form = second_form(plan.surface, plan.uv)
         plan = retwisted(
             replace(plan, starts=records),
             form,
@@ -105,16 +104,18 @@ def _distinct(finalists: tuple[Finalist, ...]) -> list[Finalist]:
     return kept
 
 
-def _laid(surface: Surface, flat: Flattening, material: Material, width: float, thickness: float) -> Design:
-    """A flattening at real size, lying as the target is seen, yet without twist."""
+def _laid(
+    surface: Surface, flat: Flattening, material: Material, width: float, thickness: float
+) -> tuple[Design, Floats]:
+    """A flattening at real size, lying as the target is seen, yet without twist; and its `second_form`."""
     angle = sheet_angle(flat.uv, surface)
     lying = turn(flat.uv, angle)
     low, high = lying.min(axis=0), lying.max(axis=0)
     scale = width / (high - low).max()
     target = Surface(surface.vertices * scale, surface.faces)
     uv = (lying - (low + high) / 2) * scale
-    theta = line_angle(flat.theta + angle)
-    return Design(
+    theta, form = line_angle(flat.theta + angle), second_form(target, uv)
+    plan = Design(
         surface=target,
         uv=uv,
         theta=theta,
@@ -123,8 +124,9 @@ def _laid(surface: Surface, flat: Flattening, material: Material, width: float, 
         material=material,
         thickness=thickness,
         flattening=replace(flat, uv=uv, theta=theta),
-        bending_left=bending_left(second_form(target, uv), theta, material, face_areas(target)),
+        bending_left=bending_left(form, theta, material, face_areas(target)),
     )
+    return plan, form
 
 
 def measured(result: Design, form: Floats, twist_limit: float) -> tuple[Finding, ...]:

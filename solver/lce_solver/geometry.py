@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from lce_solver.topology import edges
-from lce_solver.types import Floats, Surface
+from lce_solver.types import Floats, Ints, Surface
 
 
 def edge_lengths(surface: Surface) -> Floats:
@@ -48,6 +48,11 @@ def vertex_normals(surface: Surface) -> Floats:
         angle = np.arctan2(np.linalg.norm(np.cross(to_next, to_last), axis=1), np.sum(to_next * to_last, axis=1))
         np.add.at(total, surface.faces[:, i], angle[:, None] * normal)
     return _unit(total)
+
+
+def shared(values: Floats, faces: Ints, count: int) -> Floats:
+    """(n_v,) a third of the values (n_f,) of the triangles around each of ``count`` vertices."""
+    return np.asarray(np.bincount(faces.ravel(), np.repeat(values / 3, 3), minlength=count), dtype=np.float64)
 
 
 def evened(surface: Surface, values: Floats, rounds: int) -> Floats:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lce_solver.geometry import shared
 from lce_solver.shell_patch import Shell
 from lce_solver.types import Floats, owned
 
@@ -51,7 +52,7 @@ class Load:
 
 def vertex_areas(sheet: Shell) -> Floats:
     """(n_v,) a third of the flat triangles about each vertex [mm^2]."""
-    return np.bincount(sheet.faces.ravel(), np.repeat(sheet.area / 3, 3), minlength=len(sheet.uv)).astype(np.float64)
+    return shared(sheet.area, sheet.faces, len(sheet.uv))
 
 
 def specific_weight(density: float, modulus: float) -> float:

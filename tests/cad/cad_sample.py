@@ -17,6 +17,9 @@ from lce_workbench.core.marks import MARKS, Wanted
 from lce_workbench.core.prism import Prism, bodies
 from lce_workbench.core.shapes import moved
 
+CHECKS = {"cad_kernel", "cad_interference", "cad_gap", "cad_marks", "cad_mates", "cad_step"}
+"""Of `cad.checks`, for a cell without channel files."""
+
 PITCH = 0.03
 """Side of the square that two domains share [mm]."""
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cad.cad_sample import PITCH, gauged
+from cad.cad_sample import CHECKS, PITCH, gauged
 
 from lce_solver.types import Severity
 from lce_workbench.cad.checks import check
@@ -36,14 +36,7 @@ def errors(made, **changes):
 def test_a_sound_cell_has_no_error_and_is_measured(made):
     found = check(*made)
     assert all(f.severity is Severity.INFO for f in found)
-    assert {f.check for f in found} == {
-        "cad_kernel",
-        "cad_interference",
-        "cad_gap",
-        "cad_marks",
-        "cad_mates",
-        "cad_step",
-    }
+    assert {f.check for f in found} == CHECKS
     assert len([f for f in found if f.check == "cad_step"]) == 10
 
 

@@ -1,6 +1,6 @@
 """A session from a mesh to all files in the window; the files are those of `./lce build`."""
 
-import gui_steps as steps
+import gui_tour as tour
 import trimesh
 from freecad_call import FreeCAD
 from processes import display
@@ -18,7 +18,7 @@ def test_a_session_ends_with_the_files_of_the_command_line(tmp_path):
     trimesh.Trimesh(surface.vertices, surface.faces, process=False).export(tmp_path / "bump.stl")
     freecad = FreeCAD(tmp_path / "home")
     with display() as screen:
-        found = freecad.window(screen, steps.whole, mesh=str(tmp_path / "bump.stl"), folder=str(out))
+        found = freecad.window(screen, tour.whole, mesh=str(tmp_path / "bump.stl"), folder=str(out))
     assert "Traceback" not in freecad.said
     assert set(found["statuses"].values()) == {"current"}
     assert found["rows"] > 30
