@@ -119,7 +119,7 @@ def _starts(_review: Review, record: Mapping[str, Any], axes: Axes) -> None:
         axes.annotate(
             "\n".join(marks), (start["angle"], 100 * start["score"]), (0, 2), textcoords="offset points", ha="center"
         )
-    axes.margins(y=0.22)
+    axes.margins(x=0.12, y=0.22)
     axes.set(xlabel="direction of the first stretch [°]", ylabel="rms × bending left [%]")
 
 
@@ -205,7 +205,9 @@ FIGURES: dict[str, Plan] = {
     "jumps": Plan("Jumps between neighbours", "Where the director turns much, the film has to even it out.", _jumps),
     "energy": Plan(
         "Energy history",
-        "The winner's energy on the finest mesh.",
+        "The winner's energy on the finest mesh, with the weight of the director's smoothness. Where the last point lies "
+        "apart, another sheet with the same metric was taken, because its twist carries more of the bending: its energy "
+        "without that weight.",
         _energy,
         wanted=lambda review: bool(np.any(review.design.flattening.energy > 0)),
     ),

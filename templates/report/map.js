@@ -1,6 +1,6 @@
 // The map of the sheet: triangles are filled pixel by pixel (no seams, no GPU needed); zoomed in, the channels themselves.
 const sheet = (() => {
-  const STREAKS = 1500, STREAK_PX = 11, CHANNEL_PX = 2.5;
+  const STREAKS = 1500, STREAK_PX = 11, CHANNEL_PX = 2.5, REST_MS = 150;
   const canvas = $("map-canvas"), pen = canvas.getContext("2d", { willReadFrequently: true }), tip = $("map-tip");
   const corners = array("corners", Float64Array), phase = array("phase", Float64Array), K = meta.corners, residual = array("residual", Float32Array);
   const edge = Float64Array.from({ length: count }, (_, t) => Math.sqrt(column.area_mm2[t] * 4 / Math.sqrt(3)) * 1000);
@@ -34,7 +34,8 @@ const sheet = (() => {
   const camera = { x: middle[0], y: middle[1], scale: 1, home: true };          // scale: CSS pixels per mm
   const state = { quantity: "theta", view: "sheet", hover: -1 };
   const paint = new Uint32Array(count);                         // of each domain, as a pixel holds it: alpha, blue, green, red
-  let ratio = 1, frames = 0, image = null, pixels = null;
+  const layer = document.createElement("canvas"), brush = layer.getContext("2d", { willReadFrequently: true });
+  let ratio = 1, frames = 0, image = null, pixels = null, filled = "", layered = null, moving = 0;
 
   const angles = () => column[views[state.view][0]];
   const mirror = () => views[state.view][1];
@@ -92,8 +93,8 @@ const sheet = (() => {
     for (let t = 0; t < count; t++) { const [r, g, b] = colour(name, shade(shown[t])); paint[t] = (255 << 24 | b << 16 | g << 8 | r) >>> 0; }
     const bar = $("map-bar"), brush = bar.getContext("2d"), [low, high] = quantities[state.quantity][3];
     for (let k = 0; k < 256; k++) { brush.fillStyle = `rgb(${colour(name, k / 255).join()})`; brush.fillRect(k, 0, 1, 1); }
-    const digits = high - low > 50 ? 0 : 2;
-    $("map-ticks").replaceChildren(...[0, 0.25, 0.5, 0.75, 1].map(share => { const tick = document.createElement("span"); tick.textContent = (low + share * (high - low)).toFixed(digits) + (share ? "" : " ") + quantities[state.quantity][4]; return tick; }));
+    const digits = high - low > 50 ? 0 : 2, unit = quantities[state.quantity][4];
+    $("map-ticks").replaceChildren(...[0, 0.25, 0.5, 0.75, 1].map(share => { const tick = document.createElement("span"); tick.textContent = (low + share * (high - low)).toFixed(digits) + (unit === "°" ? "" : " ") + unit; return tick; }));
     redraw();
   }
 
@@ -129,39 +130,66 @@ const sheet = (() => {
   function draw() {
     ratio = fit(canvas);
     if (camera.home) { camera.scale = whole(); [camera.x, camera.y] = middle; }
-    const scale = camera.scale * ratio, m = mirror();
+    const w = canvas.width, h = canvas.height, scale = camera.scale * ratio, m = mirror();
     const seen = camera.scale > 1.5 * whole() ? inSight() : null;
-    raster(scale, m, seen);
-    pen.setTransform(scale * m, 0, 0, -scale, canvas.width / 2 - scale * m * camera.x, canvas.height / 2 + scale * camera.y);
-    const size = Math.sqrt((bounds[1] - bounds[0]) * (bounds[3] - bounds[2]) / count) * camera.scale;
-    if (size > STREAK_PX) lines(seen || inSight());
+    const look = [w, h, scale, camera.x, camera.y, state.quantity, state.view].join();
+    if (look === filled) pen.putImageData(image, 0, 0); else raster(scale, m, seen);
+    filled = look;
+    if (Math.sqrt((bounds[1] - bounds[0]) * (bounds[3] - bounds[2]) / count) * camera.scale > STREAK_PX) overlay(look, seen || inSight());
+    place(pen, camera);
     outline(selection.domain, css("--pick"), 3);
     outline(state.hover, css("--ink"), 1.5);
     frames++;
   }
 
-  function lines(seen) {
+  /** Let a pen draw in mm as a camera sees the sheet. */
+  function place(onto, { x: px, y: py, scale: s }) {
+    const scale = s * ratio, m = mirror();
+    onto.setTransform(scale * m, 0, 0, -scale, canvas.width / 2 - scale * m * px, canvas.height / 2 + scale * py);
+  }
+
+  /** The lines, which take long, are drawn where the map rests; while it moves the last ones move with it. */
+  function overlay(look, seen) {
+    const w = canvas.width, h = canvas.height;
+    if (layered?.look !== look && !moving) {
+      layer.width = w; layer.height = h;                          // which also clears it
+      place(brush, camera);
+      lines(brush, seen);
+      layered = { look, view: state.view, ...camera };
+    }
+    const k = camera.scale / layered?.scale, scale = camera.scale * ratio, m = mirror();
+    if (layered?.view !== state.view || k > 3 || k < 1 / 3) return;
+    const right = (1 - k) * w / 2 + scale * m * (layered.x - camera.x), down = (1 - k) * h / 2 - scale * (layered.y - camera.y);
+    pen.setTransform(k, 0, 0, k, Math.round(right), Math.round(down));  // whole pixels keep the lines sharp
+    pen.drawImage(layer, 0, 0);
+  }
+  function moved() {
+    clearTimeout(moving);
+    moving = setTimeout(() => { moving = 0; redraw(); }, REST_MS);
+    redraw();
+  }
+
+  function lines(onto, seen) {
     const along = angles(), m = mirror();                       // the view itself is mirrored, so its lines turn back
     const line = t => { const a = along[t] * Math.PI / 180; return m < 0 ? Math.PI - a : a; };
-    pen.lineWidth = 1.2 / camera.scale;
     if (meta.channels.pitch * camera.scale > CHANNEL_PX && state.view !== "sheet") {
-      pen.strokeStyle = "#000c"; pen.lineWidth = meta.channels.width; pen.beginPath();
+      onto.strokeStyle = "#000c"; onto.lineWidth = meta.channels.width; onto.beginPath();
       for (const t of seen) for (const [cx, cy, length] of channels(t, line(t), state.view.startsWith("top") ? 1 : 0)) {
         const dx = Math.cos(line(t)) * length / 2, dy = Math.sin(line(t)) * length / 2;
-        pen.moveTo(cx - dx, cy - dy); pen.lineTo(cx + dx, cy + dy);
+        onto.moveTo(cx - dx, cy - dy); onto.lineTo(cx + dx, cy + dy);
       }
-      pen.stroke();
-      pen.lineWidth = 1 / camera.scale; pen.strokeStyle = "#fff"; pen.beginPath();
-      for (const t of seen) trace(pen, t);
-      pen.stroke();
+      onto.stroke();
+      onto.lineWidth = 1 / camera.scale; onto.strokeStyle = "#fff"; onto.beginPath();
+      for (const t of seen) trace(onto, t);
+      onto.stroke();
     } else if (seen.length < STREAKS) {
-      pen.beginPath();
+      onto.beginPath();
       for (const t of seen) {
         const r = edge[t] / 1000 * 0.3, [cx, cy] = centre(t);
-        pen.moveTo(cx - r * Math.cos(line(t)), cy - r * Math.sin(line(t))); pen.lineTo(cx + r * Math.cos(line(t)), cy + r * Math.sin(line(t)));
+        onto.moveTo(cx - r * Math.cos(line(t)), cy - r * Math.sin(line(t))); onto.lineTo(cx + r * Math.cos(line(t)), cy + r * Math.sin(line(t)));
       }
-      pen.lineWidth = 3 / camera.scale; pen.strokeStyle = "#fffa"; pen.stroke();
-      pen.lineWidth = 1.2 / camera.scale; pen.strokeStyle = "#000"; pen.stroke();
+      onto.lineWidth = 3 / camera.scale; onto.strokeStyle = "#fffa"; onto.stroke();
+      onto.lineWidth = 1.2 / camera.scale; onto.strokeStyle = "#000"; onto.stroke();
     }
   }
 
@@ -175,15 +203,18 @@ const sheet = (() => {
   const redraw = once(draw);
 
   const row = t => columns.map((name, k) => `${name} ${cells[t][k]}`);
+  let tipSize = [0, 0];
   function hovered(sx, sy) {
-    state.hover = pick(...toSheet(sx, sy));
-    tip.hidden = state.hover < 0;
-    if (state.hover >= 0) {
-      tip.textContent = [...row(state.hover), `stretch_error_pct ${residual[state.hover].toFixed(3)}`].join("\n");
-      tip.style.left = Math.max(0, Math.min(sx + 16, canvas.clientWidth - tip.offsetWidth)) + "px";
-      tip.style.top = Math.max(0, Math.min(sy + 16, canvas.clientHeight - tip.offsetHeight)) + "px";
+    const t = pick(...toSheet(sx, sy));
+    if (t !== state.hover) {
+      state.hover = t;
+      tip.hidden = t < 0;
+      if (t >= 0) tip.textContent = [...row(t), `stretch_error_pct ${residual[t].toFixed(3)}`].join("\n");
+      tipSize = [tip.offsetWidth, tip.offsetHeight];
+      redraw();
     }
-    redraw();
+    const [left, top] = [[sx, canvas.clientWidth], [sy, canvas.clientHeight]].map(([at, room], k) => Math.max(0, Math.min(at + 16, room - tipSize[k])));
+    tip.style.transform = `translate(${left}px, ${top}px)`;       // in a layer of its own: moving it paints nothing anew
   }
   function zoom(factor, sx = canvas.clientWidth / 2, sy = canvas.clientHeight / 2) {
     const [px, py] = toSheet(sx, sy);
@@ -191,9 +222,9 @@ const sheet = (() => {
     camera.scale = Math.max(whole() * 0.5, Math.min(20000, camera.scale * factor));
     const [qx, qy] = toSheet(sx, sy);
     camera.x += px - qx; camera.y += py - qy;
-    redraw();
+    moved();
   }
-  function move(dx, dy) { camera.home = false; camera.x -= mirror() * dx / camera.scale; camera.y += dy / camera.scale; redraw(); }
+  function move(dx, dy) { camera.home = false; camera.x -= mirror() * dx / camera.scale; camera.y += dy / camera.scale; moved(); }
   function home() { camera.home = true; redraw(); }
   function goTo(t, scale) { camera.home = false; camera.scale = scale; [camera.x, camera.y] = centre(t); redraw(); }
   gestures(canvas, {

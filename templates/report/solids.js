@@ -1,4 +1,5 @@
 // Small WebGL2 viewer: triangles with a colour per vertex, lit from the eye, turned by pointer or keys.
+const OPEN = 2.4, NEAR = 1.2, MARGIN = 0.08;                     // of the lens; of the first look at a body
 function viewer(canvas) {
   const gl = canvas.getContext("webgl2", { antialias: true });
   if (!gl) { $("no-webgl").hidden = false; return null; }
@@ -28,17 +29,30 @@ function viewer(canvas) {
     for (let k = 0; k < points.length; k++) { low[k % 3] = Math.min(low[k % 3], points[k]); high[k % 3] = Math.max(high[k % 3], points[k]); }
     for (let i = 0; i < 3; i++) middle[i] = (low[i] + high[i]) / 2;
     size = Math.hypot(...high.map((v, i) => v - low[i])) || 1;
+    start.near = eye.near = NEAR * size / reach(points);
     redraw();
+  }
+  /** How far the eye has to be so that all points are in sight, with a margin. */
+  function reach(points) {
+    const [right, up, back] = axes(), w = canvas.clientWidth, h = canvas.clientHeight, slim = OPEN * Math.min(1, w / h);
+    const along = (axis, k) => axis[0] * (points[k] - middle[0]) + axis[1] * (points[k + 1] - middle[1]) + axis[2] * (points[k + 2] - middle[2]);
+    let far = size / 10;
+    for (let k = 0; k < points.length; k += 3)
+      far = Math.max(far, along(back, k) + slim * Math.max(Math.abs(along(right, k)) * h / w, Math.abs(along(up, k))) / (1 - MARGIN));
+    return far;
+  }
+  /** The directions right, up and towards the eye. */
+  function axes() {
+    const [a, b, c, d] = [Math.cos(eye.turn), Math.sin(eye.turn), Math.cos(eye.tilt), Math.sin(eye.tilt)];
+    return [[a, b, 0], [-b * c, a * c, d], [b * d, -a * d, c]];
   }
   function draw() {
     fit(canvas);
-    const w = canvas.width, h = canvas.height, far = size * 1.2 / eye.near, open = 2.4, slim = Math.min(1, w / h);
-    const [a, b, c, d] = [Math.cos(eye.turn), Math.sin(eye.turn), Math.cos(eye.tilt), Math.sin(eye.tilt)];
-    const rows = [[a, b, 0], [-b * c, a * c, d], [b * d, -a * d, c]];
+    const w = canvas.width, h = canvas.height, far = size * NEAR / eye.near, slim = OPEN * Math.min(1, w / h), rows = axes();
     const view = new Float32Array([0, 1, 2].flatMap(k => [...rows.map(r => r[k]), 0]).concat(rows.map(r => -(r[0] * middle[0] + r[1] * middle[1] + r[2] * middle[2])), 1));
     view[14] -= far;
     const near = far / 50, back = far + 3 * size;
-    const lens = new Float32Array([open * slim * h / w, 0, 0, 0, 0, open * slim, 0, 0, 0, 0, -(back + near) / (back - near), -1, 0, 0, -2 * back * near / (back - near), 0]);
+    const lens = new Float32Array([slim * h / w, 0, 0, 0, 0, slim, 0, 0, 0, 0, -(back + near) / (back - near), -1, 0, 0, -2 * back * near / (back - near), 0]);
     gl.viewport(0, 0, w, h); gl.clearColor(0, 0, 0, 0); gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST); gl.enable(gl.BLEND); gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     gl.uniformMatrix4fv(place.view, false, view); gl.uniformMatrix4fv(place.lens, false, lens);
@@ -86,7 +100,7 @@ function showShape() {
   heat.addEventListener("input", heated);
   const chosen = () => { hot.shown = $("shape-show").value !== "target"; goal.shown = $("shape-show").value !== "prediction"; view.redraw(); };
   $("shape-show").addEventListener("change", chosen);
-  view.frame(target);
+  view.frame([...target, ...step(0)]);                            // the flat sheet is larger
   heated();
   chosen();
 }

@@ -20,7 +20,8 @@ pictures = false
 freecad = false
 """
 
-ARGUMENTS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+ARGUMENTS = ["--no-sandbox", "--enable-unsafe-swiftshader"]
+"""WebGL2 on the processor; everything else is drawn by Chromium's own compositor, which is far quicker there."""
 
 
 @pytest.fixture(scope="session")

@@ -8,8 +8,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, ImageDraw
 
+from lce_solver.compare import align, vertex_areas
 from lce_workbench.cli import main
 from lce_workbench.core.channels import ChannelField
 from lce_workbench.core.domains import PLATES
@@ -187,6 +188,96 @@ def test_the_channels_that_are_drawn_are_those_of_the_masks(page, built):
             assert len(drawn) == ours.sum() == review.columns[f"channels_{plate}"][domain]
             assert drawn[:, :2] == pytest.approx(part.centre[ours], abs=1e-9)
             assert np.abs(drawn[:, 2] - part.length[ours]).max() < 1.01e-4
+
+
+MOVED = """async () => {
+  const canvas = document.getElementById("map-canvas"), pen = canvas.getContext("2d");
+  const frame = () => new Promise(requestAnimationFrame), rest = () => new Promise(done => setTimeout(done, 500));
+  const look = () => new Uint32Array(pen.getImageData(0, 0, canvas.width, canvas.height).data.buffer);
+  const view = name => {
+    document.getElementById("map-view").value = name;
+    document.getElementById("map-view").dispatchEvent(new Event("change"));
+  };
+  canvas.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowLeft" }));
+  await frame(); await frame();
+  const moving = look();
+  await rest();
+  const resting = look();
+  for (const name of ["top", "bottom"]) { view(name); await rest(); }
+  const anew = look(), strip = k => k % canvas.width < 38, inside = k => k % canvas.width > 42;
+  const apart = (v, u) => Math.max(...[0, 8, 16].map(bits => Math.abs((v >> bits & 255) - (u >> bits & 255))));
+  const unlike = (one, other, where) => one.filter((v, k) => where(k) && apart(v, other[k]) > 8).length / one.length;
+  return { inside: unlike(moving, resting, inside), strip: unlike(moving, resting, strip),
+           anew: unlike(resting, anew, () => true), inks: new Set(resting).size };
+}"""
+"""One step of 40 pixels to the right: shares of pixels that change when the map comes to rest, and when redrawn."""
+
+
+def test_the_channels_move_with_the_map_and_are_drawn_anew_where_it_rests(page):
+    page.select_option("#map-view", "bottom")
+    page.click("#map-channels")
+    page.wait_for_timeout(500)
+    changed = page.evaluate(MOVED)
+    assert changed["inside"] < 0.002
+    assert changed["strip"] > 0.01  # of which 0.03 are in it: no channels stood there yet
+    assert changed["anew"] == 0
+    assert changed["inks"] > 30
+
+
+FINE = 4
+"""Pixels of a silhouette for each on the screen, both ways."""
+
+
+def silhouette(points, faces, scene, shape):
+    """Which pixels (h, w) a shape covers, seen by the page's camera from where ``scene`` just fits in."""
+    turn, tilt, opening, filled = -0.45, 0.85, 2.4, 0.92
+    h, w = shape
+    a, b, c, d = np.cos(turn), np.sin(turn), np.cos(tilt), np.sin(tilt)
+    axes, middle = (
+        np.array([[a, b, 0], [-b * c, a * c, d], [b * d, -a * d, c]]),
+        (scene.min(axis=0) + scene.max(axis=0)) / 2,
+    )
+    lens = opening * min(1.0, w / h)
+    x, y, z = axes @ (scene - middle).T
+    far = np.max(z + lens / filled * np.maximum(np.abs(x) * h / w, np.abs(y)))
+    x, y, z = axes @ (points - middle).T
+    places = np.column_stack([w / 2 + lens * h / 2 * x / (far - z), h / 2 - lens * h / 2 * y / (far - z)])
+    picture = Image.new("L", (FINE * w, FINE * h))
+    pen = ImageDraw.Draw(picture)
+    for corners in FINE * places[faces]:
+        pen.polygon([tuple(corner) for corner in corners], fill=255)
+    return np.asarray(picture.reduce(FINE)) > 127
+
+
+def overlap(one, other):
+    """Intersection over union."""
+    return (one & other).sum() / (one | other).sum()
+
+
+def test_the_slider_shows_the_shape_that_was_predicted_at_each_lambda(page, built):
+    """Its outline on the screen against the frames of prediction.npz, seen by the same camera."""
+    with np.load(built / "design.npz") as design, np.load(built / "prediction.npz") as found:
+        target, faces, flat = design["vertices"], design["faces"], design["uv"]
+        frames = np.concatenate([np.pad(flat, ((0, 0), (0, 1)))[None], found["frames"].reshape(-1, *target.shape)])
+    lambdas = [1.0, *(step["lambda_"] for step in json.loads((built / "prediction.json").read_text())["heating"])]
+    laid = align(frames[-1], target, vertex_areas(target, faces))
+    frames = frames @ laid.rotation.T + laid.shift
+    scene = np.concatenate([target, frames[0]])
+    canvas = page.locator("#shape")
+    canvas.scroll_into_view_if_needed()
+    page.wait_for_timeout(400)
+    for k in (0, len(frames) // 2, len(frames) - 1):
+        page.evaluate(f"document.getElementById('shape-heat').value = {k}")
+        page.dispatch_event("#shape-heat", "input")
+        page.wait_for_timeout(300)
+        seen = pixels(canvas)
+        assert page.inner_text("#shape-lambda") == (f"λ = {lambdas[k]:.3f}" if k else "λ = 1 (flat)")
+        ink = np.abs(seen - seen[2, 2]).sum(axis=2) > 60
+        fits = [overlap(ink, silhouette(points, faces, scene, ink.shape)) for points in frames]
+        assert not ink[[0, -1]].any()  # the flat sheet is larger than the target
+        assert not ink[:, [0, -1]].any()
+        assert fits[k] > 0.985
+        assert np.argmax(fits) == k
 
 
 def test_the_shape_is_drawn_and_the_slider_heats_it(page):
