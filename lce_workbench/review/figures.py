@@ -205,8 +205,8 @@ FIGURES: dict[str, Plan] = {
     "jumps": Plan("Jumps between neighbours", "Where the director turns much, the film has to even it out.", _jumps),
     "energy": Plan(
         "Energy history",
-        "The winner's energy on the finest mesh, with the weight of the director's smoothness. Where the last point lies "
-        "apart, another sheet with the same metric was taken, because its twist carries more of the bending: its energy "
+        "The winner's energy on the finest mesh, with the weight of the director's smoothness. Where the last point "
+        "lies apart, another sheet with the same metric was taken, whose twist carries more of the bending: its energy "
         "without that weight.",
         _energy,
         wanted=lambda review: bool(np.any(review.design.flattening.energy > 0)),
