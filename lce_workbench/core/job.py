@@ -44,7 +44,7 @@ class Target:
     surface: str = param("", "a shipped surface instead of a mesh: dome, saddle, leaf, cone, sphere-zone, face")
     subdivision: str = param(
         "loop",
-        "how a kept mesh coarser than the domains is refined: loop for smooth surfaces, midpoint for faceted ones",
+        "how a mesh coarser than the domains is refined: loop for smooth surfaces, midpoint for faceted ones",
         choices=("loop", "midpoint"),
     )
     remesh: bool = param(

@@ -10,6 +10,7 @@ import numpy as np
 
 from lce_solver.cut import opened, proposed, seams
 from lce_solver.errors import InputError
+from lce_solver.facets import rounded
 from lce_solver.metric import Stop, flatten, lay_flat
 from lce_solver.mirror import even_mesh
 from lce_solver.surface import face_areas, load, mean_edge, subdivide
@@ -47,11 +48,18 @@ def trial(job: Job, base: Path) -> Surface:
     """
     if job.target.surface:
         return _surface(job.target.surface)(COARSE)
-    return _even(load(base / job.target.mesh, cuts=job.target.cuts)[0])
+    return _coarse(load(base / job.target.mesh, cuts=job.target.cuts)[0], job)
 
 
-def _even(surface: Surface) -> Surface:
-    return even_mesh(surface, float(np.sqrt(4 / np.sqrt(3) * face_areas(surface).sum() / TRIAL)))
+def _coarse(surface: Surface, job: Job) -> Surface:
+    """About `TRIAL` even triangles."""
+    return _even(surface, float(np.sqrt(4 / np.sqrt(3) * face_areas(surface).sum() / TRIAL)), job)[0]
+
+
+def _even(surface: Surface, edge: float, job: Job) -> tuple[Surface, float]:
+    """Even triangles, and how well a surface is known whose own are larger: 0 if they are not, or are meant."""
+    smooth, known = rounded(surface, edge) if job.target.subdivision == "loop" else (surface, 0.0)
+    return even_mesh(smooth, edge, known), known
 
 
 def _surface(name: str) -> Callable[[float], Surface]:
@@ -79,7 +87,8 @@ def _cuts(trial: Surface, job: Job, material: Material) -> tuple[Floats, ...]:
 def _meshed(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Finding, ...]]:
     surface, found = load(base / job.target.mesh, cuts=job.target.cuts)
     if job.target.remesh:
-        return _resampled(surface, job, material), found
+        fine, told = _resampled(surface, job, material)
+        return fine, (*found, *told)
     surface = opened(surface, _cuts(surface, job, material))
     size, flat = job.domains.size, flat_edge(surface, job, material)
     if flat <= size:
@@ -93,13 +102,24 @@ def _meshed(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Fi
     return fine, (*found, Finding("subdivided", Severity.INFO, text, flat * 1e3, job.domains.size_um, "um"))
 
 
-def _resampled(surface: Surface, job: Job, material: Material) -> Surface:
+def _resampled(surface: Surface, job: Job, material: Material) -> tuple[Surface, tuple[Finding, ...]]:
     """Even triangles of the domains' size, whatever the input's: a trial with about `TRIAL` of them gives the scale."""
-    coarse = _even(surface)
+    coarse = _coarse(surface, job)
     cuts = _cuts(coarse, job, material)
-    edge = job.domains.size * mean_edge(coarse) / flat_edge(opened(coarse, cuts), job, material)
+    flat = flat_edge(opened(coarse, cuts), job, material)
+    edge = job.domains.size * mean_edge(coarse) / flat
     _require_budget(surface, edge)
-    return opened(even_mesh(surface, edge), cuts, straight=True)
+    even, known = _even(surface, edge, job)
+    made = opened(even, cuts, straight=True)
+    if not known:
+        return made, ()
+    size = mean_edge(surface) * job.domains.size / edge * 1e3
+    text = (
+        f"the mesh is coarser than the domains (mean edge {size:.0f} um on the sheet), so a smooth surface was laid "
+        f"through its vertices, which is known to about {known * job.domains.size / edge * 1e3:.0f} um (rms) between "
+        'them; give a finer mesh, or target.subdivision = "midpoint" if its facets are meant'
+    )
+    return made, (Finding("smoothed", Severity.INFO, text, size, job.domains.size_um, "um"),)
 
 
 def _require_budget(surface: Surface, edge: float) -> None:

@@ -57,8 +57,14 @@ class Plane:
         return mirrored
 
 
-def mirror_plane(surface: Surface) -> Plane | None:
-    """The plane at which the surface is its own mirror image, if there is one; the best of several."""
+def mirror_plane(surface: Surface, known: float = 0.0) -> Plane | None:
+    """The plane at which the surface is its own mirror image, if there is one; the best of several.
+
+    Parameters
+    ----------
+    known : rms distance up to which the surface is known. Its image is known no better, so the root of two times it is
+        allowed, but `MISMATCH` at least.
+    """
     diagonal = float(np.linalg.norm(np.ptp(surface.vertices, axis=0)))
     points = surface.vertices[:: max(1, len(surface.vertices) // SAMPLE)]
     candidates = [plane for plane in _candidates(surface) if np.ptp(plane.height(points)) > 2 * THIN * diagonal]
@@ -71,7 +77,7 @@ def mirror_plane(surface: Surface) -> Plane | None:
         plane = _fitted(points, closest(plane.image(points)), plane)
     image = plane.image(surface.vertices)
     miss = np.sqrt(np.mean(np.sum((image - closest(image)) ** 2, axis=1)))
-    return plane if miss <= MISMATCH * diagonal else None
+    return plane if miss <= max(np.sqrt(2) * known, MISMATCH * diagonal) else None
 
 
 def _candidates(surface: Surface) -> list[Plane]:
@@ -106,17 +112,17 @@ def _fitted(points: Floats, partners: Floats, plane: Plane) -> Plane:
     return Plane(normal, float(normal @ centre))
 
 
-def even_mesh(surface: Surface, edge: float) -> Surface:
+def even_mesh(surface: Surface, edge: float, known: float = 0.0) -> Surface:
     """The surface with near-equilateral triangles of mean edge ``edge``; symmetric if the surface is.
 
-    Of a symmetric surface one half is meshed and mirrored, so the surface changes by `MISMATCH` at most, rms.
+    Of a symmetric surface one half is meshed and mirrored, so the surface changes by what `mirror_plane` allows, rms.
 
     Raises
     ------
     InputError, SolverError
         As `remesh`.
     """
-    plane = mirror_plane(surface)
+    plane = mirror_plane(surface, known)
     half = None if plane is None else _half(surface, plane, edge)
     if plane is None or half is None:
         return remesh(surface, edge)

@@ -167,15 +167,15 @@ def _signals_kept() -> Iterator[None]:
 
 def _on(target: Surface, loops: list[Ints], found: Surface) -> Surface:
     """``found`` with its vertices moved to the closest points of ``target``, rim to rim."""
-    points = _closest(found.vertices, target.vertices, target.faces)
+    points = closest(found.vertices, target.vertices, target.faces)
     if loops:
         rim = np.concatenate(boundary_loops(found.faces))
         segments = np.concatenate([np.stack([loop, np.roll(loop, -1)], axis=1) for loop in loops])
-        points[rim] = _closest(found.vertices[rim], target.vertices, segments)
+        points[rim] = closest(found.vertices[rim], target.vertices, segments)
     return Surface(points, found.faces)
 
 
-def _closest(points: Floats, vertices: Floats, elements: Ints) -> Floats:
+def closest(points: Floats, vertices: Floats, elements: Ints) -> Floats:
     """(n, 3) closest points on triangles (m, 3) or segments (m, 2)."""
     arrays = (np.array(values, order="C") for values in (points, vertices, elements))
     return np.asarray(igl.point_mesh_squared_distance(*arrays)[2])

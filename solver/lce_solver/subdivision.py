@@ -73,9 +73,6 @@ def loop_weights(faces: Ints, n_vertices: int) -> csr_array:
     """
     edges, which, count = edge_table(faces)
     rim = count == 1
-    on_rim = np.zeros(n_vertices, dtype=bool)
-    on_rim[edges[rim]] = True
-
     row = np.arange(len(edges)).repeat(2)
     opposite = faces[:, [2, 0, 1]].T.ravel()
     across = ~rim[which]
@@ -85,19 +82,31 @@ def loop_weights(faces: Ints, n_vertices: int) -> csr_array:
         np.concatenate([edges.ravel(), opposite[across]]),
         (len(edges), n_vertices),
     )
+    return csr_array(vstack([_vertices(faces, n_vertices, 1 / 8, _beta), odd]))
+
+
+def loop_limit(faces: Ints, n_vertices: int) -> csr_array:
+    """(n_v, n_v): where Loop's scheme takes the vertices in the end (Hoppe et al. 1994)."""
+    return _vertices(faces, n_vertices, 1 / 6, lambda valence: 1 / (valence + 3 / (8 * _beta(valence))))
+
+
+def _vertices(faces: Ints, n_vertices: int, rim_weight: float, inner_weight: Callable[[Ints], Floats]) -> csr_array:
+    """(n_v, n_v) means of vertices and neighbours, from the weight of each: ``inner_weight`` knows their number."""
+    edges, _, count = edge_table(faces)
+    rim = count == 1
+    on_rim = np.zeros(n_vertices, dtype=bool)
+    on_rim[edges[rim]] = True
     vertex, other = np.concatenate([edges, edges[:, ::-1]]).T
-    along = np.tile(rim, 2)
-    valence = np.bincount(vertex, minlength=n_vertices)
-    weight = np.where(on_rim[vertex], np.where(along, 1 / 8, 0.0), _beta(valence)[vertex])
+    valence = np.maximum(np.bincount(vertex, minlength=n_vertices), 1)
+    weight = np.where(on_rim[vertex], np.where(np.tile(rim, 2), rim_weight, 0.0), inner_weight(valence)[vertex])
     pull = _matrix(weight, vertex, other, (n_vertices, n_vertices))
-    keep = _matrix(1 - np.ravel(pull.sum(axis=1)), np.arange(n_vertices), np.arange(n_vertices), pull.shape)
-    return csr_array(vstack([keep + pull, odd]))
+    keep = 1 - np.ravel(pull.sum(axis=1))
+    return csr_array(pull + _matrix(keep, np.arange(n_vertices), np.arange(n_vertices), pull.shape))
 
 
 def _beta(valence: Ints) -> Floats:
     """Loop's weight of each neighbour of an inner vertex."""
-    n = np.maximum(valence, 1)
-    return (5 / 8 - (3 / 8 + np.cos(2 * np.pi / n) / 4) ** 2) / n
+    return (5 / 8 - (3 / 8 + np.cos(2 * np.pi / valence) / 4) ** 2) / valence
 
 
 def _matrix(values: Floats, rows: Ints, columns: Ints, shape: tuple[int, int]) -> csr_array:
