@@ -13,6 +13,7 @@ from lce_workbench.core import target
 from lce_workbench.core.job import DomainSpec, Job, Target
 
 RADIUS = 0.5 / np.sin(CAP)
+CENTRE = (0, 0, -RADIUS * np.cos(CAP))
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +31,7 @@ def resolved(folder, **spec):
 
 
 def off_sphere(points):
-    return np.sqrt(np.mean((np.linalg.norm(points + (0, 0, RADIUS * np.cos(CAP)), axis=1) - RADIUS) ** 2))
+    return np.sqrt(np.mean((np.linalg.norm(points - CENTRE, axis=1) - RADIUS) ** 2))
 
 
 def test_a_coarse_scan_is_taken_for_a_smooth_surface_and_said_so(scan):
