@@ -22,6 +22,8 @@ rm -rf -- "$folder$here"
 mkdir -p -- "$folder$here"
 git -C "$root" ls-files -z --cached --others --exclude-standard | tar -C "$root" --null -T - -cf - | tar -C "$folder$here" -xf -
 ln -s /srv/lce-molds/.venv "$folder$here/.venv"
+mount --rbind "$folder" "$folder" # tests that start programs in a mount namespace need a root that is a mount point
+cd "$folder"
 mount -t proc proc "$folder/proc"
 mount --rbind /dev "$folder/dev"
 exec env -u DISPLAY HOME=/root LC_ALL=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin OPENBLAS_NUM_THREADS=1 \

@@ -79,6 +79,7 @@ def direct(found, doc, name, pictures):
 def findings(doc):
     """The list of findings, and what a double click on those with a place does."""
     import FreeCADGui
+    import pivy.coin  # noqa: F401  FreeCAD 1.0 hands nodes to Python only when it is loaded
 
     table = widget("lce_findings").widget()
     items = [table.topLevelItem(row) for row in range(table.topLevelItemCount())]

@@ -89,23 +89,26 @@ def anywhere():
     return QtCore.Qt.MatchExactly | QtCore.Qt.MatchRecursive
 
 
-def whole(mesh, folder, pictures=""):
-    """From a mesh to all files, as a user takes the steps."""
+def whole(mesh, folder, settings, pictures=""):
+    """From a mesh to all files, as a user takes the steps; ``settings``: step -> what is written into its panel."""
+    import time
+
     import FreeCAD
     import FreeCADGui
     import Mesh
 
+    FreeCADGui.getMainWindow().setGeometry(0, 0, 1400, 900)
     activate()
-    doc = FreeCAD.newDocument("Whole")
+    doc, seconds = FreeCAD.newDocument("Whole"), {}
     Mesh.insert(mesh, doc.Name)
     FreeCADGui.Selection.addSelection(doc.Objects[0])
     for number, (name, fill) in enumerate(
         {
-            "NewCell": {"sheet.width_mm": "2 mm", "domains.size_um": "400 um"},
+            "NewCell": {},
             "Design": {},
             "Predict": {},
             "Plates": {},
-            "Mask": {"folder": folder, "output.masks": "gds"},
+            "Mask": {"folder": folder},
             "Drawings": None,
             "Inspect": None,
             "Export": {"folder": folder},
@@ -113,17 +116,21 @@ def whole(mesh, folder, pictures=""):
         }.items(),
         start=1,
     ):
+        began = time.monotonic()
         run(name)
         if fill is not None:
-            for field, text in fill.items():
+            for field, text in (fill | settings.get(name, {})).items():
                 write(field, text)
             assert press("Ok"), widget("reason").text()
-            until(lambda: not is_open(), 600)
+            until(lambda: not is_open(), 900)
+        seconds[name] = round(time.monotonic() - began, 1)
         FreeCADGui.Selection.clearSelection()
         picture(pictures, f"{number}_{name}")
     rows = widget("lce_findings").widget().topLevelItemCount()
     statuses = {o.Label: o.Status for o in doc.Objects if "MadeFor" in o.PropertiesList}
-    return {"statuses": statuses, "folder": doc.Review.Folder, "rows": rows, "errors": doc.Review.Errors}
+    figures = [doc.Design.Domains, doc.Mask.ChannelsBottom, doc.Prediction.Verdict, doc.Prediction.Rms]
+    found = {"statuses": statuses, "folder": doc.Review.Folder, "rows": rows, "errors": doc.Review.Errors}
+    return found | {"seconds": seconds, "figures": figures}
 
 
 def viewed(folder, pictures):

@@ -106,6 +106,8 @@ def older(path):
 
     cell = cells.the_cell(doc)
     session.inspect(cell)
-    shapes = {o.Prisms: o.Shape.Volume for o in doc.Objects if getattr(o, "Prisms", "channels")[:8] != "channels"}
+    parts = [o for o in doc.Objects if getattr(o, "Prisms", "channels")[:8] != "channels" and not o.Shape.isNull()]
+    shapes = {o.Prisms: o.Shape.Volume for o in parts}
     versions = sorted({o.SchemaVersion for o in doc.Objects if "SchemaVersion" in o.PropertiesList})
-    return {"versions": versions, "errors": doc.Review.Errors, "shapes": shapes, **figures(doc.BillOfMaterials)}
+    found = {"new": int(FreeCAD.Version()[0]) >= 1, "versions": versions, "errors": doc.Review.Errors}
+    return {**found, "shapes": shapes, **figures(doc.BillOfMaterials)}

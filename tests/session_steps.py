@@ -26,13 +26,20 @@ def work(mesh, folder):
     recomputed = watch(doc)
     session.set_parameters(cell, {"sheet.gap_um": 150.0})
     found["gap"] = {"recomputed": recomputed(), "statuses": statuses(doc), "figures": figures(doc)}
+    session.inspect(cell)
+    found["said"] = [text for text in doc.Review.Findings if "by the formula alone" in text]
     began = time.process_time()
     session.set_parameters(cell, {"channels.depth_um": 0.7})
     found["depth"] = {"recomputed": recomputed(), "seconds": time.process_time() - began}
     session.channel_window(cell, (3, 7))
     found["window"] = len(doc.ChannelsTop.Shape.Solids)
     session.mask(cell, folder)
-    found["masked"] = statuses(doc)
+    found["masked"], found["drawn"] = statuses(doc), figures(doc)
+    session.set_parameters(cell, {"output.step_domains": (4,)})
+    found["window moved"] = statuses(doc)
+    session.set_parameters(cell, {"prediction.correct": "off"})
+    found["off"] = [statuses(doc), figures(doc)]
+    session.set_parameters(cell, {"prediction.correct": "full"})
     doc.addObject("Spreadsheet::Sheet", "Table").set("A1", "=20 um")
     doc.Table.setAlias("A1", "layer")
     doc.recompute()
@@ -125,6 +132,30 @@ def old(path, save_as):
     FreeCAD.closeDocument(doc.Name)
     doc = FreeCAD.openDocument(save_as)
     found["again"] = [doc.Design.Status, doc.MarksParameters.PrintedLabel, doc.MarksParameters.Label]
+    return found
+
+
+def third(path):
+    """Open a document of schema 3 and change what its results depend on."""
+    import FreeCAD
+
+    import lce_workbench  # noqa: F401
+    from lce_workbench import packages
+
+    packages.append()
+    doc, found = FreeCAD.openDocument(path), {}
+    doc.recompute()
+    versions = sorted({o.SchemaVersion for o in doc.Objects if "SchemaVersion" in o.PropertiesList})
+    found["opened"] = [versions, doc.Design.Status, doc.Mask.Status]
+    from lce_workbench.app import session
+
+    for name, settings in {
+        "gap": {"sheet.gap_um": 150.0},
+        "uncorrected": {"prediction.correct": "off"},
+        "back": {"sheet.gap_um": 100.0, "prediction.correct": "full", "spacer.bead_mm": 0.5},
+    }.items():
+        session.set_parameters(doc.Cell, settings)
+        found[name] = [doc.Design.Status, doc.Mask.Status]
     return found
 
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import FreeCAD
+import numpy as np
 
 from lce_solver.errors import EnvironmentFault, InputError
 from lce_workbench import ROOT, packages
@@ -70,6 +71,12 @@ class DrawnSymbol(Drawn):
     def execute(self, obj: Any) -> None:
         """Draw it anew."""
         obj.Svg = symbol(sheet_of(obj))
+
+
+def figure_of(view: Any) -> Figure:
+    """What a view shows, for the parameters as they are."""
+    source = view.Source[0]
+    return next(placed.figure for placed in sheet_of(source).views if placed.figure.name == source.Figure)
 
 
 def sheet_of(obj: Any) -> Sheet:
@@ -257,13 +264,26 @@ def recompute(pages: Iterable[Any]) -> None:
         if not obj.isValid():
             raise InputError(obj.getStatusString())
     end = time.monotonic() + PATIENCE
-    while waiting := [v for v in views if v.isDerivedFrom("TechDraw::DrawViewPart") and not v.getVisibleEdges()]:
+    while waiting := [v for v in views if v.isDerivedFrom("TechDraw::DrawViewPart") and not _shows(v, figure_of(v))]:
         FreeCADGui.updateGui()
         time.sleep(0.01)
         if time.monotonic() > end:
             msg = f"TechDraw did not draw {waiting[0].Label} within {PATIENCE:g} s; end other programs and try again"
             raise EnvironmentFault(msg)
+    for view in views:
+        if view.isDerivedFrom("TechDraw::DrawViewDimension"):
+            view.recompute()  # of the edges as they are now
     FreeCADGui.updateGui()
+
+
+def _shows(view: Any, figure: Figure) -> bool:
+    """Whether a view shows its figure as it is now: its extent, and a vertex wherever something is dimensioned."""
+    points, near = np.array([(point.x, point.y) for point in _vertices(view)]), NEAR * max(figure.size)
+    if not view.getVisibleEdges() or np.abs(np.ptp(points, axis=0) - figure.size).max() > near:
+        return False
+    ends = np.array([end for dim in figure.dims for end in (dim.a, dim.b)]).reshape(-1, 2) - figure.middle
+    away = np.linalg.norm(ends[:, None] - points, axis=2).min(axis=1)
+    return bool(np.all(away <= near))
 
 
 def _annotate(doc: Any, page: Any, view: Any, placed: Placed) -> None:

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from lce_solver.types import Finding, Floats
+from lce_solver.types import Finding, Floats, Severity
 from lce_workbench.app import cells, works
-from lce_workbench.app.geometry import stored
+from lce_workbench.app.geometry import is_rough, stored
 from lce_workbench.app.objects import is_fine, job_of, prisms_of
 from lce_workbench.cad.checks import SAME, judged
 from lce_workbench.core.frame import MARK_BOX, arrange
@@ -34,6 +34,7 @@ def inspected(cell: Any) -> tuple[Finding, ...]:
     job = job_of(cells.sections(cell).values())
     return (
         _current(bodies),
+        _corrected(cell, job),
         _kernel(bodies),
         _gap(parts, job),
         _interference(parts),
@@ -60,7 +61,7 @@ def _filled(obj: Any) -> Any:
 def marks(cell: Any, job: Job) -> Floats:
     """(n, 2) middles of the clusters of marks [mm]."""
     design = cells.design_of(cell)
-    return arrange(stored(Path(design.File), job.sheet, cells.made_for(design).sheet).uv, job).marks
+    return arrange(stored(Path(design.File), job, cells.made_for(design)).uv, job).marks
 
 
 def _current(bodies: list[Any]) -> Finding:
@@ -69,6 +70,14 @@ def _current(bodies: list[Any]) -> Finding:
     why = "".join(f"{obj.Label}: {obj.getStatusString()}; " for obj in bad)
     names = " ".join(obj.Prisms for obj in bad)
     return judged("body_state", f"{why}bodies that could not be computed:", len(bad), 0.0, where=names)
+
+
+def _corrected(cell: Any, job: Job) -> Finding:
+    """Whether the twist was corrected for the film as it is now."""
+    if is_rough(job, cells.made_for(cells.design_of(cell))):
+        text = "the twist follows the film by the formula alone; Predict, Mask or Export corrects it by the heating"
+        return Finding("twist_corrected", Severity.WARNING, text)
+    return Finding("twist_corrected", Severity.INFO, "the twist is the one that was solved for this film")
 
 
 def _kernel(bodies: list[Any]) -> Finding:

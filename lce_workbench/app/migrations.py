@@ -70,8 +70,21 @@ def _body_3(obj: Any) -> None:
     obj.Volume = obj.Shape.Volume
 
 
+def _result_4(obj: Any) -> None:
+    """The twist depends on how it is corrected; and what a result is not made from does not make it stale."""
+    from lce_workbench.app import cells
+
+    linked = [section.Section for section in obj.Parameters]
+    if "prediction" not in linked:
+        obj.Parameters = [*obj.Parameters, cells.sections(cells.cell_of(obj))["prediction"]]
+    if hasattr(obj.Proxy, "USES") and obj.MadeFor:
+        kept = obj.Proxy.values(obj).keys()
+        obj.MadeFor = json.dumps({name: value for name, value in json.loads(obj.MadeFor).items() if name in kept})
+
+
 STEPS: tuple[dict[str, Callable[[Any], None]], ...] = (
     {"Parameters": _parameters_2, "DesignData": _design_2, "Body": _body_2},
     {"Body": _body_3},
+    {"DesignData": _result_4, "PredictionData": _result_4, "MaskData": _result_4},
 )
 """From schema 1 to 2, and so on: class of a proxy -> what is done."""

@@ -8,23 +8,23 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import fields, replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from lce_solver.errors import InputError
 from lce_workbench.app import cells
-from lce_workbench.app.geometry import domains_of, stored
-from lce_workbench.app.objects import FILES, HIDDEN, READ_ONLY, SECTIONS, Proxy, add, job_of
+from lce_workbench.app.geometry import fields_of, is_rough, stored
+from lce_workbench.app.objects import FILES, HIDDEN, READ_ONLY, Proxy, add, job_of
 from lce_workbench.core import jobfile
-from lce_workbench.core.channels import ChannelField
 from lce_workbench.core.domains import PLATES
-from lce_workbench.core.job import ChannelSpec, Job
 from lce_workbench.core.marks import fingerprint
+from lce_workbench.core.uses import USES, sections, values
 
 MISSING, CURRENT, STALE = "not computed", "current", "stale"
 """How a state begins."""
+
+ROUGH = f"{CURRENT}, but not corrected for this film yet; Predict, Mask or Export does it"
+"""A design whose twist follows the film's thickness by the formula alone."""
 
 MARK = " (stale)"
 """What a stale result adds to its label."""
@@ -91,7 +91,7 @@ def _same(one: Any, other: Any) -> bool:
 class DesignData(Result):
     """The solved metric and the twist that follows from it, stored inside the document."""
 
-    SECTIONS = ("target", "material", "sheet", "domains", "solver")
+    SECTIONS = (*jobfile.METRIC_SECTIONS, "prediction")
 
     def setup(self, obj: Any) -> None:
         super().setup(obj)
@@ -109,12 +109,17 @@ class DesignData(Result):
         files = {p.Section: cells.digest(p.File) for p in obj.Parameters if p.Section in FILES and p.File}
         return {**found, **files}
 
+    def state(self, obj: Any) -> str:
+        """As of every result; and whether its twist was corrected."""
+        found = super().state(obj)
+        return ROUGH if found == CURRENT and is_rough(job_of(obj.Parameters), cells.made_for(obj)) else found
+
     def execute(self, obj: Any) -> None:
         """Tell the state, and the figures for the film as it is now."""
         super().execute(obj)
         if not obj.File:
             return
-        design = stored(Path(obj.File), job_of(obj.Parameters).sheet, cells.made_for(obj).sheet)
+        design = stored(Path(obj.File), job_of(obj.Parameters), cells.made_for(obj))
         obj.Domains = len(design.theta)
         obj.Width, obj.Height = (design.uv.max(axis=0) - design.uv.min(axis=0)).tolist()
         obj.LargestTwist = math.degrees(abs(design.dtheta).max())
@@ -124,7 +129,8 @@ class DesignData(Result):
 class Outcome(Result):
     """What is made from a design."""
 
-    SECTIONS: tuple[str, ...] = ()
+    USES: tuple[str, ...] = ()
+    """Parameters that it is made from besides."""
 
     def setup(self, obj: Any) -> None:
         super().setup(obj)
@@ -145,23 +151,18 @@ class Outcome(Result):
 
     def state(self, obj: Any) -> str:
         found = super().state(obj)
-        stale = found == CURRENT and obj.Design.Status != CURRENT
+        stale = found == CURRENT and not obj.Design.Status.startswith(CURRENT)
         return f"{STALE}: the design is {obj.Design.Status}" if stale else found
 
     def values(self, obj: Any) -> Values:
-        job = job_of(obj.Parameters)
-        own = {
-            f"{name}.{jobfile.toml_name(f)}": getattr(getattr(job, name), f.name)
-            for name in self.SECTIONS
-            for f in fields(SECTIONS[name])
-        }
-        return {"design": cells.digest(obj.Design.File), **own}
+        return {"design": cells.digest(obj.Design.File), **values(job_of(obj.Parameters), self.USES)}
 
 
 class PredictionData(Outcome):
     """The shape that the heated sheet takes."""
 
-    SECTIONS = ("sheet", "prediction")
+    USES = USES["prediction"]
+    SECTIONS = sections(USES)
 
     def setup(self, obj: Any) -> None:
         super().setup(obj)
@@ -175,7 +176,8 @@ class PredictionData(Outcome):
 class MaskData(Outcome):
     """The masks of both plates: their channels now, and where they were written last."""
 
-    SECTIONS = ("sheet", "channels", "plates", "marks", "spacer", "output")
+    USES = USES["mask"]
+    SECTIONS = sections(USES)
 
     def setup(self, obj: Any) -> None:
         super().setup(obj)
@@ -189,26 +191,16 @@ class MaskData(Outcome):
         super().execute(obj)
         if not obj.Design.File:
             return
-        job = job_of(obj.Parameters)
-        # No mask shows the depth, and the channels' phases are counted with them.
-        wanted = replace(job, channels=replace(job.channels, depth_um=ChannelSpec.depth_um))
-        path = Path(obj.Design.File)
-        counted = _counted(path, path.stat().st_mtime_ns, wanted, cells.made_for(obj.Design))
-        obj.ChannelsBottom, obj.ChannelsTop, obj.Code = counted
-
-
-@lru_cache(maxsize=4)
-def _counted(path: Path, changed: int, job: Job, made_for: Job) -> tuple[int, int, str]:  # noqa: ARG001
-    """Channels of both plates, and the code of the design."""
-    domains = domains_of(path, job, made_for)
-    bottom, top = (int(ChannelField(domains, plate, job.channels).counts.sum()) for plate in PLATES)
-    return bottom, top, fingerprint(domains, job.channels)
+        fields = fields_of(Path(obj.Design.File), job_of(obj.Parameters), cells.made_for(obj.Design))
+        obj.ChannelsBottom, obj.ChannelsTop = (int(fields[plate].counts.sum()) for plate in PLATES)
+        obj.Code = fingerprint(fields["bottom"].domains, fields["bottom"].spec)
 
 
 class ReviewData(Outcome):
     """What was found in the cell, and in the written files."""
 
-    SECTIONS = tuple(name for name in vars(Job()) if name not in {"target", "material", "domains", "solver"})
+    USES = USES["review"]
+    SECTIONS = sections(USES)
 
     def setup(self, obj: Any) -> None:
         super().setup(obj)

@@ -25,9 +25,10 @@ from lce_workbench.app.bill import add_bill
 from lce_workbench.app.inspection import inspected
 from lce_workbench.app.objects import FILES, SECTIONS, job_of
 from lce_workbench.app.properties import properties
+from lce_workbench.app.results import CURRENT
 from lce_workbench.core import jobfile
 from lce_workbench.core.job import Job
-from lce_workbench.outputs import as_record
+from lce_workbench.outputs import as_record, read_manifest
 
 Settings = Mapping[str, Any]
 """``section.key`` -> value; `None` takes an optional value back."""
@@ -141,10 +142,22 @@ def design(cell: Any) -> None:
     LceError
         What the solver says.
     """
-    now = job(cell)
-    work = child.done(works.design(cell, now))
-    document.take_design(cell, work.out / "design.npz", now, (work.out / "manifest.json").read_text(encoding="utf-8"))
+    work = child.done(works.design(cell, job(cell)))
+    _take(cell, work.out)
+
+
+def _take(cell: Any, out: Path) -> None:
+    """Put the design of an output folder into the document, with what was found when it was solved."""
+    manifest = read_manifest(out)
+    manifest["findings"] = [found for found in manifest["findings"] if found["stage"] == "design"]
+    document.take_design(cell, out / "design.npz", job(cell), json.dumps(manifest))
     cell.Document.recompute()
+
+
+def _take_corrected(cell: Any, out: Path) -> None:
+    """Put the design that was corrected for another film on the way to the files of ``out`` into the document."""
+    if cells.design_of(cell).Status != CURRENT:
+        _take(cell, out)
 
 
 def predict(cell: Any) -> None:
@@ -156,6 +169,7 @@ def predict(cell: Any) -> None:
         There is no current design, or what the simulation says.
     """
     work = child.done(works.predict(cell, job(cell)))
+    _take_corrected(cell, work.out)
     found = json.loads((work.out / "prediction.json").read_text(encoding="utf-8"))
     obj = document.add_result(cell, "Prediction")
     obj.File, obj.Verdict, obj.Mirrored = str(work.out / "prediction.npz"), found["verdict"], found["mirrored"]
@@ -200,6 +214,7 @@ def mask(cell: Any, folder: str) -> None:
         There is no current design, or what the check of the masks says.
     """
     work = child.done(works.mask(cell, job(cell), Path(folder)))
+    _take_corrected(cell, work.out)
     _written(cell, "Mask", work.out)
 
 
@@ -212,6 +227,7 @@ def export(cell: Any, folder: str) -> None:
         There is no current design, or what a stage says.
     """
     work = child.done(works.export(cell, job(cell), Path(folder)))
+    _take_corrected(cell, work.out)
     _written(cell, "Mask", work.out)
 
 
@@ -245,6 +261,7 @@ def review(cell: Any, folder: str) -> None:
         There is no current design, or what a stage says.
     """
     work = child.done(works.review(cell, job(cell), Path(folder)))
+    _take_corrected(cell, work.out)
     found = json.loads((work.out / "manifest.json").read_text(encoding="utf-8"))["findings"]
     document.take_findings(cell, found + _measured(cell))
     _written(cell, "Review", work.out)

@@ -258,7 +258,7 @@ def subject_of(path: Path, job: Job, made_for: Job | None = None) -> Subject:
 
 @lru_cache(maxsize=4)
 def _subject(path: Path, changed: int, job: Job, made_for: Job | None) -> Subject:  # noqa: ARG001
-    design = stored(path, job.sheet, made_for.sheet if made_for else None)
+    design = stored(path, job, made_for)
     domains = domains_of(path, job, made_for)
     code = fingerprint(domains, job.channels)
     return Subject(job, arrange(design.uv, job), domains, assembled(path, job, made_for), code)

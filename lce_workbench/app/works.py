@@ -132,7 +132,7 @@ def require_current(cell: Any, job: Job) -> None:
     """
     require_design(cell)
     obj = cells.design_of(cell)
-    if obj.Status != CURRENT:
+    if not obj.Status.startswith(CURRENT):
         msg = f"the design of {cell.Label} is {obj.Status}; run Design again, or set the value back"
         raise InputError(msg)
     words = difference(jobfile.metric_values(job), jobfile.metric_values(cells.made_for(obj)))

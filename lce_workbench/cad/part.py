@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from lce_solver.types import Floats
 from lce_workbench.cad.solids import require_volume
 from lce_workbench.core.polyhedron import polyhedron
-from lce_workbench.core.prism import Prism, together
+from lce_workbench.core.prism import Prism
 
 
 def solid(stack: Sequence[Prism]) -> Any:
@@ -28,14 +29,26 @@ def solid(stack: Sequence[Prism]) -> Any:
 
     first = stack[0]
     if len(stack) == 1 and first.upper is None:
-        shape = _face([np.insert(ring, 2, first.z0, axis=1) for ring in first.rings]).extrude(
-            Vector(0, 0, first.z1 - first.z0)
-        )
+        shape = _section(first.rings).translated(Vector(0, 0, first.z0)).extrude(Vector(0, 0, first.z1 - first.z0))
     else:
         made = polyhedron(stack)
         shape = Part.Solid(Part.Shell([_face([made.points[loop] for loop in loops]) for loops in made.faces]))
-    require_volume(first.name, together(stack)[0], shape.Volume)
+    require_volume(first.name, sum(prism.volume for prism in stack), shape.Volume)
     return shape
+
+
+def _section(rings: Sequence[Floats]) -> Any:
+    """The plane face inside rings (k, 2) at z = 0.
+
+    The same face for the same rings: a window that has drawn it once need not mesh it again, which for a land with
+    its hundreds of holes takes longer than all the rest.
+    """
+    return _remembered(tuple(ring.tobytes() for ring in rings))
+
+
+@lru_cache(maxsize=1024)
+def _remembered(rings: tuple[bytes, ...]) -> Any:
+    return _face([np.insert(np.frombuffer(ring).reshape(-1, 2), 2, 0.0, axis=1) for ring in rings])
 
 
 def _face(rings: Sequence[Floats]) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -73,11 +74,13 @@ class Prism:
         moments = np.column_stack([sections[:, 1:], sections[:, 0] * heights])
         return np.asarray(SIMPSON @ moments / (SIMPSON @ sections[:, 0]))
 
-    @property
+    @cached_property
     def _sections(self) -> Floats:
         """(3, 3) area and first moments of the lower, the middle and the upper section."""
         inner = np.sum([np.zeros(3), *map(_moments, self.holes)], axis=0)
-        outlines = (self.outline, (self.outline + self.top) / 2, self.top)
+        if self.upper is None:
+            return np.tile(_moments(self.outline) + inner, (3, 1))
+        outlines = (self.outline, (self.outline + self.upper) / 2, self.upper)
         return np.array([_moments(outline) + inner for outline in outlines])
 
 
@@ -105,7 +108,7 @@ def _turned(ring: Floats, sign: int) -> Floats:
 def _moments(ring: Floats) -> Floats:
     """Signed area and first moments (3,) of a polygon, by the shoelace formula about its first corner."""
     p = ring - ring[0]
-    q = np.roll(p, -1, axis=0)
+    q = np.concatenate([p[1:], p[:1]])
     cross = p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
     area = cross.sum() / 2
     return np.array([area, *(cross @ (p + q) / 6 + area * ring[0])])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +13,13 @@ from lce_solver.errors import InputError, LceError
 from lce_solver.types import Floats
 from lce_workbench.app import cells, works
 from lce_workbench.app.cuts import apart, cut
-from lce_workbench.app.geometry import domains_of, stored
+from lce_workbench.app.geometry import domains_of, fields_of, stored
 from lce_workbench.app.objects import job_of, prisms_around
 from lce_workbench.app.pictures import PICTURES, Picture, Shown, flat_skin
 from lce_workbench.app.results import STALE
 from lce_workbench.app.skins import Skin, domain_at, first_hit
+from lce_workbench.core.channels import ChannelField
+from lce_workbench.core.domains import Plate
 from lce_workbench.gui import nodes
 from lce_workbench.gui.camera import look_at, view_of
 from lce_workbench.gui.legend import Legend, legend
@@ -85,7 +87,7 @@ class Scene:
         works.require_design(self.cell)
         job, design = job_of(cells.sections(self.cell).values()), cells.design_of(self.cell)
         path, made_for = Path(design.File), cells.made_for(design)
-        plan = stored(path, job.sheet, made_for.sheet)
+        plan = stored(path, job, made_for)
         heating, hot = cells.result(self.cell, "PredictionData"), None
         if heating is not None and heating.File:
             with np.load(heating.File, allow_pickle=False) as data:
@@ -93,6 +95,11 @@ class Scene:
         sources = {"deviation": (heating,)}.get(self.name, (design,))
         stale = any(source is not None and source.Status.startswith(STALE) for source in sources)
         return Shown(plan, domains_of(path, job, made_for), job, hot, stale)
+
+    def fields(self) -> Mapping[Plate, ChannelField]:
+        """The channels of both plates."""
+        job, design = job_of(cells.sections(self.cell).values()), cells.design_of(self.cell)
+        return fields_of(Path(design.File), job, cells.made_for(design))
 
     def draw(self) -> None:
         """Make all nodes anew from the state.

@@ -11,7 +11,6 @@ import numpy as np
 
 from lce_solver.types import Ints
 from lce_workbench.app import works
-from lce_workbench.core.channels import ChannelField
 from lce_workbench.core.domains import PLATES
 from lce_workbench.export.table import columns
 from lce_workbench.gui import scene, stage
@@ -28,6 +27,9 @@ HEADS: dict[str, str] = {
     "channels_top": "Channels top", "channels_bottom": "Channels bottom",
 }  # fmt: skip
 """Column of domains.csv -> its head here; the angles as written on the master are left out."""
+
+ROWS_SEEN = 100
+"""So many rows tell how wide a column has to be."""
 
 DIGITS = {"dtheta_deg": 3, "area_mm2": 5, "stretch_along": 4, "stretch_across": 4}
 """Decimals; whole numbers have none, the others 2."""
@@ -104,8 +106,8 @@ class Table(QtWidgets.QDockWidget):
         super().__init__(tr("Domains"), parent)
         self.setObjectName(DOCK)
         self.shown: stage.Scene | None = None
-        self.domains: Any = None
-        self.spec: Any = None
+        self.fields: Any = None
+        """Channels of both plates."""
         self.following = False
         """Whether the selection follows the view, and not the user."""
         self.model = Rows()
@@ -113,6 +115,7 @@ class Table(QtWidgets.QDockWidget):
         self.view.setModel(self.model)
         self.view.setSortingEnabled(True)
         self.view.horizontalHeader().setSortIndicator(0, QtCore.Qt.AscendingOrder)
+        self.view.horizontalHeader().setResizeContentsPrecision(ROWS_SEEN)
         self.view.setSelectionBehavior(QtWidgets.QAbstractItemView.SelectRows)
         self.view.verticalHeader().hide()
         self.view.verticalHeader().setDefaultSectionSize(22)
@@ -132,7 +135,7 @@ class Table(QtWidgets.QDockWidget):
     def take(self, cell: Any) -> None:
         """Show the domains of a cell, and what is marked of them."""
         self.listen(False)
-        self.shown, self.domains = scene.of(cell), None
+        self.shown, self.fields = scene.of(cell), None
         self.follow(self.shown)
         self.listen(True)
 
@@ -150,11 +153,10 @@ class Table(QtWidgets.QDockWidget):
             self.shown = None
             self.model.take({"domain": np.arange(0)})
             return
-        data = shown.shown()
-        if (self.domains, self.spec) != (data.domains, data.job.channels):
-            self.domains, self.spec = data.domains, data.job.channels
-            counts = [ChannelField(data.domains, plate, data.job.channels).counts for plate in PLATES]
-            self.model.take(columns(data.domains, counts))
+        fields = shown.fields()
+        if fields is not self.fields:
+            self.fields = fields
+            self.model.take(columns(fields["bottom"].domains, [fields[plate].counts for plate in PLATES]))
             self.view.resizeColumnsToContents()
         self.select(shown.marked)
         self.tell(shown.marked)

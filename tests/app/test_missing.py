@@ -12,6 +12,7 @@ import pytest
 import sheets
 from freecad_call import FreeCAD
 from processes import ROOT, display
+from readonly import read_only
 
 from lce_workbench.outputs import write_design, write_manifest
 from lce_workbench.pipeline import versions
@@ -38,16 +39,6 @@ def environment_without(root, *left_out):
         if not package.name.lower().startswith(left_out):
             (site / package.name).symlink_to(package)
     return root / ".venv" / "bin" / "python"
-
-
-def read_only(folder):
-    """Words that start a program for which a folder cannot be written; the superuser may write where others may not."""
-    if os.geteuid() == 0:
-        script = 'mount --bind "$0" "$0" && mount -o remount,ro,bind "$0" && exec "$@"'
-        return ["unshare", "--mount", "sh", "-c", script, str(folder)]
-    for path in (folder, *folder.rglob("*")):
-        path.chmod(path.stat().st_mode & ~0o222)
-    return []
 
 
 @pytest.fixture

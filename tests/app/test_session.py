@@ -1,5 +1,6 @@
 """The work on a cell by the functions that scripts and the window call, in FreeCAD without a window."""
 
+import csv
 import io
 
 import numpy as np
@@ -63,12 +64,31 @@ def test_a_wrong_setting_is_one_sentence_and_changes_nothing(done):
 
 def test_the_gap_moves_twist_and_masks_but_not_the_metric(done):
     after = done["gap"]
-    assert after["statuses"]["Design"] == "current"
+    assert after["statuses"]["Design"].startswith("current, but not corrected for this film yet")
+    assert done["said"]
     assert after["statuses"]["Prediction (stale)"] == "stale: sheet.gap_um is now 150.0, this was made for 100.0"
     twist, mask = after["figures"]
     assert mask != done["mask"]
     assert twist >= done["twist"]
     assert "TargetParameters" not in after["recomputed"]
+
+
+def test_what_is_written_comes_back_corrected_into_the_document(done, out):
+    assert done["masked"]["Design"] == done["masked"]["Mask"] == "current"
+    twist, (bottom, top, code) = done["drawn"]
+    with (out / "out" / "cell" / "domains.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [sum(int(row[f"channels_{plate}"]) for row in rows) for plate in ("bottom", "top")] == [bottom, top]
+    assert max(abs(float(row["dtheta_deg"])) for row in rows) == pytest.approx(twist, abs=1e-6)
+    assert code in (out / "out" / "cell" / "mask" / "job_sheet.txt").read_text()
+
+
+def test_results_are_stale_only_when_a_parameter_of_theirs_changed(done):
+    assert done["window moved"] == done["masked"]
+    statuses, uncorrected = done["off"]
+    assert statuses["Design"] == "current"
+    assert uncorrected != done["drawn"]
+    assert statuses["Mask (stale)"] == "stale: prediction.correct is now 'off', this was made for 'full'"
 
 
 def test_the_depth_moves_the_plates_alone_and_at_once(done):
@@ -86,7 +106,7 @@ def test_another_width_makes_all_results_stale_and_the_masks_refuse(done):
     told = "stale: sheet.width_mm is now 4.0, this was made for 3.0"
     assert done["stale"]["Design (stale)"] == told
     assert done["stale"]["Mask (stale)"].startswith("stale")
-    assert done["stale"]["Review"] == "not computed"
+    assert done["designed"]["Review"] == "not computed"
     assert done["too late"].startswith(f"the design of Cell is {told}; run Design again")
 
 
@@ -105,7 +125,7 @@ def test_a_document_of_schema_1_opens_works_and_is_saved_anew(tmp_path):
     path = ROOT / "tests" / "documents" / "schema1.FCStd"
     found = freecad.console(steps.old, path=path, save_as=tmp_path / "new.FCStd")
     assert "Traceback" not in freecad.said
-    assert found["versions"] == [3]
+    assert found["versions"] == [4]
     assert found["labels"]["SheetParameters"] == "Sheet"
     assert "surface='saddle'" in found["job"]
     assert "width_um=5.0" in found["job"]
@@ -115,6 +135,16 @@ def test_a_document_of_schema_1_opens_works_and_is_saved_anew(tmp_path):
     assert found["status"] == "current"
     assert found["stale"] == "stale: sheet.width_mm is now 9.0, this was made for 2.2"
     assert found["again"] == [found["stale"], "A1", "Marks"]
+
+
+def test_a_document_of_schema_3_takes_the_dependencies_of_today(tmp_path):
+    freecad = FreeCAD(tmp_path / "home")
+    found = freecad.console(steps.third, path=ROOT / "tests" / "documents" / "schema3.FCStd")
+    assert "Traceback" not in freecad.said
+    assert found["opened"] == [[4], "current", "current"]
+    assert found["gap"][0].startswith("current, but not corrected")
+    assert found["uncorrected"][0] == "current"
+    assert found["back"] == ["current", "current"]
 
 
 def test_targets_come_from_meshes_and_faces_of_the_document(mesh, tmp_path):
