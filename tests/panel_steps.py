@@ -53,8 +53,9 @@ def typed(_=""):
     for text in REFUSED:
         edit(doc, "SheetParameters")
         write("sheet.gap_um", text)
-        found["refused"][text] = [press("Ok"), is_open(), widget("reason").text()]
-        press("Cancel")
+        found["refused"][text] = [press("Ok"), is_open(), widget("reason").text() if is_open() else ""]
+        if is_open():
+            press("Cancel")
     found["changed"] = differences(former, state(doc))
     return found
 
@@ -74,7 +75,7 @@ def formula(_=""):
     former, found = state(doc), {}
     for button in ("Cancel", "Ok"):
         edit(doc, "SheetParameters")
-        found[button] = [expressed("sheet.gap_um", "ChannelsParameters.Depth * 200"), press(button)]
+        found[button] = [expressed("sheet.gap_um", "ChannelsParameters.Depth * 201.5"), press(button)]
         found[button] += [differences(former, state(doc)), doc.SheetParameters.ExpressionEngine]
     doc.recompute()
     found["gap"] = doc.SheetParameters.Gap.Value * 1000

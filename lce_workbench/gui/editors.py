@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import Field
@@ -205,15 +206,17 @@ class Quantity(Editor):
             # FreeCAD passes over it: where thousands are grouped by points, 1.3 mm would be 13 mm.
             msg = f"{self.name} is {text!r}; the decimal mark of your language is {mark!r}, so leave out {groups!r}"
             raise InputError(msg)
-        try:
-            written = FreeCAD.Units.Quantity(text)
-        except (ValueError, ArithmeticError, OSError):
-            written = None
-        if written is None or written.Unit not in (KINDS_OF_UNIT[self.unit][1], PLAIN):  # plain: of the box's own unit
+        now = self.box.property("rawValue")
+        # The box passes over what it cannot read, and keeps its former value.
+        written = _size(text, KINDS_OF_UNIT[self.unit][1])
+        if not math.isfinite(written) or not (self.bound() or math.isclose(written, now, rel_tol=SHOWN, abs_tol=SHOWN)):
             msg = f"{self.name} is {text!r}; give a number with a unit, for example {KINDS_OF_UNIT[self.unit][2]}"
             raise InputError(msg)
-        now = self.box.property("rawValue")
         return self.value if now == self.shown else self.prop.shifted(float(f"{now:.12g}"), -self.prop.places)
+
+    def bound(self) -> bool:
+        """Whether an expression gives the value; the box shows two decimals of it."""
+        return self.obj is not None and any(path == self.prop.name for path, _ in self.obj.ExpressionEngine)
 
     def watch(self, changed: Changed) -> None:
         self.box.findChild(QtWidgets.QLineEdit).textChanged.connect(changed)
@@ -221,6 +224,15 @@ class Quantity(Editor):
 
     def drop(self) -> None:
         self.widget = self.box = self.loader = None
+
+
+def _size(text: str, unit: Any) -> float:
+    """A quantity of this kind of unit, or a plain number, as FreeCAD reads it [mm, degrees]; nan for all else."""
+    try:
+        written = FreeCAD.Units.Quantity(text)
+    except (ValueError, ArithmeticError, OSError):
+        return math.nan
+    return written.Value if text.strip() and written.Unit in (unit, PLAIN) else math.nan
 
 
 def _created(loader: Any, kind: str) -> Any:
@@ -242,6 +254,9 @@ def _created(loader: Any, kind: str) -> Any:
 
 DIGITS = 9
 """Of a quantity, as shown."""
+
+SHOWN = 1e-8
+"""So far a text may be from its value [1, mm, degrees]."""
 
 KINDS_OF_UNIT = {
     "um": ("mm", FreeCAD.Units.Length, "150 um"),

@@ -25,7 +25,9 @@ def remember(step: str, settings: dict[str, Any], folder: str) -> None:
 
 
 def last(step: str) -> dict[str, Any]:
-    """The values of last time; {} when there are none."""
+    """The values of last time; {} when there are none, or the user does not want them."""
+    if not group().GetBool("RememberLast", True):
+        return {}
     try:
         found = json.loads(group().GetString(f"Last{step}", "{}"))
     except ValueError:

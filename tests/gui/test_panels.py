@@ -37,10 +37,10 @@ def test_an_expression_given_by_f_x_lives_in_the_document_and_cancel_takes_it_ba
     found = freecad.window(screen, steps.formula)
     assert "Traceback" not in freecad.said
     assert found["Cancel"][2:] == [[], []]
-    assert found["Ok"][3] == [["Gap", "ChannelsParameters.Depth * 200"]]
-    assert found["gap"] == pytest.approx(120)
-    assert found["follows"] == pytest.approx(140)
-    assert found["kept"] == [True, [["Gap", "ChannelsParameters.Depth * 200"]], 2.0]
+    assert found["Ok"][3] == [["Gap", "ChannelsParameters.Depth * 201.5"]]
+    assert found["gap"] == pytest.approx(120.9)
+    assert found["follows"] == pytest.approx(141.05)
+    assert found["kept"] == [True, [["Gap", "ChannelsParameters.Depth * 201.5"]], 2.0]
     assert found["undone"] == []
 
 
@@ -58,7 +58,7 @@ def test_a_new_cell_starts_with_the_values_of_last_time_unless_that_is_switched_
     first = freecad.window(screen, steps.remembered, folder=str(tmp_path), first=True)
     again = freecad.window(screen, steps.remembered, folder=str(tmp_path), first=False)
     assert "Traceback" not in freecad.said
-    assert first["start"] == [20, 100, "face"] == first["unwanted"] == again["unwanted"]
+    assert first["start"] == first["unwanted"] == again["unwanted"] == [20, 100, "face"]
     assert first["next"] == again["start"] == [7, 120, "leaf"]
     assert first["no folder"].endswith("LCE")
     assert first["beside"] == str(tmp_path)
