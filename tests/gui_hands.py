@@ -72,10 +72,13 @@ def widget(name):
 
 
 def write(name, text):
-    """Write into the field of a parameter as the user does."""
+    """Write into the field of a parameter as the user does; "yes" or "no" where there is a tick."""
     from lce_workbench.gui.qt import QtWidgets
 
     field = widget(name)
+    if isinstance(field, QtWidgets.QCheckBox):
+        field.setChecked(text == "yes")
+        return
     line = field if isinstance(field, QtWidgets.QLineEdit) else field.findChild(QtWidgets.QLineEdit)
     line.setText(text)
 

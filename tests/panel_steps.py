@@ -199,6 +199,32 @@ def remembered(folder, first):
     return found
 
 
+def budgets(root):
+    """The author and the largest channel window, as the preferences have them."""
+    import FreeCAD
+    from attack_steps import opened
+
+    activate()
+    preferences = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Mod/LceMold")
+    preferences.SetString("Author", "A. Maker")
+    FreeCAD.newDocument("Authored")
+    run("NewCell")
+    press("Ok")
+    found = {"author": FreeCAD.ActiveDocument.OutputParameters.Author}
+    doc = opened(root)
+    former = state(doc)
+    preferences.SetInt("MostSolids", 50)
+    for domains in ("3", "3, 4, 5, 6, 7, 8", "999", "3, x"):
+        run("ChannelWindow")
+        write("output.step_domains", domains)
+        found[domains] = [press("Ok"), is_open(), widget("reason").text() if is_open() else ""]
+        if is_open():
+            press("Cancel")
+    doc.undo()
+    found["changed"] = differences(former, state(doc))
+    return found
+
+
 def unwritable(root, folder, outside):
     """Masks into a folder that cannot be written: one sentence, nothing lost, the panel stays and goes on elsewhere."""
     import FreeCAD

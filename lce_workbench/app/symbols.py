@@ -15,6 +15,9 @@ from lce_workbench.app.sheets import caption
 PAPER = {"A4": (297.0, 210.0), "A3": (420.0, 297.0)}
 """Width and height, landscape [mm]."""
 
+PIXELS = 96 / 25.4
+"""Of TechDraw's pages, per mm."""
+
 PENS = {
     "thin": 'stroke-width="0.18"',
     "hair": 'stroke-width="0.05" stroke-opacity="0.5"',
@@ -41,8 +44,9 @@ def symbol(sheet: Sheet) -> str:
     """The SVG document of a whole sheet, upper left corner at the sheet's."""
     width, height = PAPER[sheet.paper]
     body = "".join(_parts(sheet, height))
+    # In pixels: Qt makes 90 of them from an inch, and TechDraw an inch from 96.
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{height:g}mm" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width * PIXELS:.3f}" height="{height * PIXELS:.3f}" '
         f'viewBox="0 0 {width:g} {height:g}">'
         f'<g fill="none" stroke="#000000" font-family="osifont">{body}</g></svg>'
     )

@@ -15,9 +15,11 @@ from typing import Any
 from lce_solver.errors import InputError
 from lce_workbench.app import cells
 from lce_workbench.app.child import Work
+from lce_workbench.app.geometry import fields_of
 from lce_workbench.app.objects import FILES
 from lce_workbench.app.results import CURRENT, difference
 from lce_workbench.core import jobfile
+from lce_workbench.core.cell import choose, wanted
 from lce_workbench.core.job import Job
 from lce_workbench.outputs import read_manifest, told
 
@@ -101,6 +103,22 @@ def require_design(cell: Any) -> None:
     if not cells.design_of(cell).File:
         msg = f"{cell.Label} is not designed yet; run Design first"
         raise InputError(msg)
+
+
+def solids(cell: Any, job: Job) -> int:
+    """How many channels the window of a job shows as solids.
+
+    Raises
+    ------
+    InputError
+        There is no design, or one of the domains is not there.
+    """
+    require_design(cell)
+    design = cells.design_of(cell)
+    fields = fields_of(Path(design.File), job, cells.made_for(design))
+    domains = fields["bottom"].domains
+    chosen = list(choose(domains, fields, wanted(domains, job.output)))
+    return int(sum(field.counts[chosen].sum() for field in fields.values()))
 
 
 def bodies(cell: Any) -> list[Any]:

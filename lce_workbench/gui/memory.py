@@ -16,6 +16,16 @@ def group() -> Any:
     return FreeCAD.ParamGet(GROUP)
 
 
+def author() -> str:
+    """Who stands in the title blocks of new cells."""
+    return str(group().GetString("Author", ""))
+
+
+def most_solids() -> int:
+    """How many channels may be shown as solids."""
+    return int(group().GetInt("MostSolids", 5000))
+
+
 def remember(step: str, settings: dict[str, Any], folder: str) -> None:
     """Keep the values of a panel for the next time, unless the user does not want it."""
     if group().GetBool("RememberLast", True):

@@ -10,13 +10,14 @@ from typing import Any
 import FreeCAD
 import FreeCADGui
 
-from lce_solver.errors import LceError
+from lce_solver.errors import InputError, LceError
 from lce_solver.surfaces import SURFACES
 from lce_solver.types import Stage, silent
-from lce_workbench.app import session
+from lce_workbench.app import session, works
 from lce_workbench.app.objects import SECTIONS
 from lce_workbench.app.properties import label, properties
 from lce_workbench.core import jobfile, material
+from lce_workbench.core.cell import SECONDS
 from lce_workbench.core.job import Job
 from lce_workbench.gui import editors, memory
 from lce_workbench.gui.qt import QtCore, QtWidgets, tr
@@ -161,12 +162,30 @@ class Panel:
         if self.closed:
             return ""  # Qt tells of fields that it is deleting
         try:
-            self.settings()
+            self.require_budget(self.settings())
             words = "" if not self.step.folder or self.folder.text().strip() else tr("choose a folder for the files")
         except LceError as fault:
             words = str(fault)
         self.tell(words)
         return words
+
+    def require_budget(self, settings: dict[str, Any]) -> None:
+        """Refuse a channel window that would be too much for this machine.
+
+        Raises
+        ------
+        InputError
+            It shows more solids than the preferences allow, or what it shows does not exist.
+        """
+        if self.step.call != "channel_window":
+            return
+        count, most = works.solids(self.cell, session.job_with(self.former, settings)), memory.most_solids()
+        if count > most:
+            msg = (
+                f"{count} channel solids take about {count * SECONDS:.0f} s, and the preferences allow {most} of them; "
+                "choose fewer domains"
+            )
+            raise InputError(msg)
 
     def tell(self, words: str) -> None:
         """Show a reason, and let OK be pressed when there is none."""
@@ -321,6 +340,8 @@ def _first(step: Step, source: Any) -> Job:
     job = jobfile.with_default_material(replace(Job(), target=replace(Job().target, surface="face")))
     with suppress(LceError):  # a former version's values
         job = session.job_with(job, {k: v for k, v in memory.last(step.name).items() if k != "target.mesh"})
+    if not job.output.author:
+        job = replace(job, output=replace(job.output, author=memory.author()))
     if not source:
         return job if job.target.surface else replace(job, target=replace(job.target, surface="face"))
     return replace(job, target=replace(job.target, surface="", mesh=f"{_name(source)}.off"))

@@ -460,8 +460,8 @@
    <translation>Unterteilung des Ziels</translation>
   </message>
   <message>
-   <source>how a kept mesh coarser than the domains is refined: loop for smooth surfaces, midpoint for faceted ones</source>
-   <translation>wie ein behaltenes Netz verfeinert wird, das gröber als die Domänen ist: loop für glatte, midpoint für facettierte Flächen</translation>
+   <source>how a mesh coarser than the domains is refined: loop for smooth surfaces, midpoint for faceted ones</source>
+   <translation type="unfinished" />
   </message>
   <message>
    <source>Target remesh</source>
@@ -1065,6 +1065,22 @@
   <message>
    <source>Start a new cell with the values of last time</source>
    <translation>Eine neue Zelle mit den Werten vom letzten Mal beginnen</translation>
+  </message>
+  <message>
+   <source>Drawn by</source>
+   <translation>Gezeichnet von</translation>
+  </message>
+  <message>
+   <source>Who stands in the title blocks of new cells</source>
+   <translation>Wer in den Schriftfeldern neuer Zellen steht</translation>
+  </message>
+  <message>
+   <source>Most channel solids</source>
+   <translation>Höchstzahl von Kanalkörpern</translation>
+  </message>
+  <message>
+   <source>Channel windows with more solids are refused: this machine would be too slow</source>
+   <translation>Kanalfenster mit mehr Körpern werden abgelehnt: dieser Rechner wäre zu langsam</translation>
   </message>
  </context>
 </TS>

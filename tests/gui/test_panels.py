@@ -65,6 +65,22 @@ def test_a_new_cell_starts_with_the_values_of_last_time_unless_that_is_switched_
     assert first["chosen"] == f"{tmp_path}/chosen"
 
 
+def test_the_author_and_the_budget_of_the_preferences_are_used(screen, freecad):
+    found = freecad.window(screen, steps.budgets, root=str(ROOT))
+    assert "Traceback" not in freecad.said
+    assert found["author"] == "A. Maker"
+    assert found["3"] == [True, False, ""]
+    for domains, words in {
+        "3, 4, 5, 6, 7, 8": "the preferences allow 50 of them; choose fewer domains",
+        "999": "domain 999 does not exist",
+        "3, x": "give whole numbers with commas between them",
+    }.items():
+        enabled, still_open, reason = found[domains]
+        assert [enabled, still_open] == [False, True], domains
+        assert words in reason
+    assert found["changed"] == []
+
+
 def test_a_folder_that_cannot_be_written_is_told_and_nothing_is_lost(screen, freecad, tmp_path):
     closed = tmp_path / "closed"
     closed.mkdir()

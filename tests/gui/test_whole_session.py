@@ -5,7 +5,14 @@ import trimesh
 
 from lce_solver.surfaces import SURFACES
 
-SETTINGS = {"NewCell": {"sheet.width_mm": "2 mm", "domains.size_um": "400 um"}, "Mask": {"output.masks": "gds"}}
+SETTINGS = {
+    "NewCell": {"sheet.width_mm": "2 mm", "domains.size_um": "400 um"},
+    "Design": {"solver.starts": "3"},
+    "Predict": {"prediction.steps": "4"},
+    "Plates": {"marks.grating": "no", "marks.fields": ""},
+    "Mask": {"output.masks": "gds", "output.pictures": "no"},
+}
+"""What makes little work, and is another value than the default in each panel."""
 
 
 def test_a_session_ends_with_the_files_of_the_command_line(tmp_path):
