@@ -461,7 +461,7 @@
   </message>
   <message>
    <source>how a mesh coarser than the domains is refined: loop for smooth surfaces, midpoint for faceted ones</source>
-   <translation type="unfinished" />
+   <translation>wie ein Netz verfeinert wird, das gröber als die Domänen ist: loop für glatte, midpoint für facettierte Flächen</translation>
   </message>
   <message>
    <source>Target remesh</source>
