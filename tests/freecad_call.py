@@ -52,6 +52,8 @@ class FreeCAD:
         """What the last process printed."""
         self.before: list[str] = []
         """A program that starts FreeCAD, with its words."""
+        self.seconds = 900.0
+        """It is ended after this time."""
         self.place = home
         """Where scripts and answers are written."""
         (home / "Mod").mkdir(parents=True)
@@ -82,7 +84,7 @@ class FreeCAD:
     def _answer(self, *words: str | Path, **more: str) -> Any:
         answer = self.place / "answer.json"
         answer.unlink(missing_ok=True)
-        ended = start(*self.before, *words, env=environment(self.home, **more), cwd=self.home, seconds=900)
+        ended = start(*self.before, *words, env=environment(self.home, **more), cwd=self.home, seconds=self.seconds)
         self.said = ended.out + ended.err
         assert answer.exists(), f"no answer from FreeCAD, exit code {ended.code}:\n{self.said}"
         result = json.loads(answer.read_text(encoding="utf-8"))

@@ -122,7 +122,7 @@ def whole(mesh, folder, settings, pictures=""):
             for field, text in (fill | settings.get(name, {})).items():
                 write(field, text)
             assert press("Ok"), widget("reason").text()
-            until(lambda: not is_open(), 900)
+            until(lambda: not is_open(), 3000)
         seconds[name] = round(time.monotonic() - began, 1)
         FreeCADGui.Selection.clearSelection()
         picture(pictures, f"{number}_{name}")

@@ -13,6 +13,8 @@ from lce_workbench import stages
 from lce_workbench.cli import main
 
 FABRICATED = ("domains.csv", "mask/", "cad/", "drawings/")
+PATIENCE = 3600.0
+"""For a session [s]."""
 BESIDE = {".png", ".FCStd"}
 """Pictures, and the document, which holds the design's record of its starts."""
 
@@ -20,6 +22,7 @@ BESIDE = {".png", ".FCStd"}
 def held(mesh: Path, folder: Path, settings: dict[str, dict[str, str]], pictures: str = "") -> dict[str, Any]:
     """What the window showed of a session with a mesh, which exports below ``folder / "out folder"``."""
     freecad = FreeCAD(folder / "home")
+    freecad.seconds = PATIENCE
     out = str(folder / "out folder")
     with display() as screen:
         found: dict[str, Any] = freecad.window(
