@@ -155,6 +155,11 @@ def read(path: Path) -> Readings:
         msg = f"{path} lacks {what}; fill in the readings.csv that lies beside the masks"
         raise InputError(msg)
     rows = [row for row in rows if row.get("dx_um", "").strip() and row.get("dy_um", "").strip()]
+    marks = [row["mark"] for row in rows]
+    twice = [mark for k, mark in enumerate(marks) if mark in marks[:k]]
+    if twice:
+        msg = f"{path} has two lines for {twice[0]!r}, which would count double; keep one, with the mean of its readings"
+        raise InputError(msg)
     values = np.array([[_number(path, row, name) for name in COLUMNS[1:]] for row in rows]).reshape(-1, 5)
     sheet = [_number(path, {"mark": "# sheet_mm", "sheet_mm": v}, "sheet_mm") for v in said["sheet_mm"].split()]
     if len(sheet) != 4:

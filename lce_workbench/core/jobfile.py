@@ -122,6 +122,10 @@ def _checked_list(value: Any, kind: type, label: str) -> tuple[Any, ...]:
     if not isinstance(value, list) or any(type(item) is not kind for item in value):
         msg = f"{label} must be a list in which each item is {WORDS[kind]}, not {value!r}"
         raise InputError(msg)
+    twice = [item for k, item in enumerate(value) if kind is str and item in value[:k]]
+    if twice:
+        msg = f"{label} lists {twice[0]!r} twice; name it once"
+        raise InputError(msg)
     return tuple(value)
 
 

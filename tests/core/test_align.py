@@ -123,6 +123,7 @@ def test_command(tmp_path, capsys):
         (lambda t: t.replace("# sheet_mm", "# sheet"), "lacks the line"),
         (lambda t: t.replace("# sheet_mm", "# sheet_mm 1"), "needs four numbers"),
         (lambda t: t.replace(",3,-1,", ",,,"), "two marks at least"),
+        (lambda t: t + "\n" + t.splitlines()[-1], "has two lines for 'left middle'"),
     ],
 )
 def test_bad_forms_are_one_sentence_and_2(tmp_path, capsys, change, sentence):
