@@ -37,7 +37,7 @@ BAD_JOBS = {
     "400 digits": (FACE + f"[sheet]\nwidth_mm = {'9' * 400}\n", "sheet.width_mm is inf; give a finite number"),
     "400 digits of a count": (FACE + f"[solver]\nstarts = {'9' * 400}\n", "solver.starts is inf; give a finite number"),
     "5000 digits": (FACE + f"[sheet]\nwidth_mm = {'9' * 5000}\n", "is not valid TOML"),
-    "format twice": (FACE + '[output]\nmasks = ["gds", "dxf", "gds"]\n', "output.masks lists 'gds' twice; name it once"),
+    "format twice": (FACE + '[output]\nmasks = ["gds", "dxf", "gds"]\n', "output.masks lists 'gds' twice"),
     "no target": ("[sheet]\nwidth_mm = 20\n", "there is no target"),
     "two targets": ('[target]\nsurface = "face"\nmesh = "a.stl"\n', "are both given"),
     "unknown choice": ('[target]\nmesh = "a.stl"\nsubdivision = "cubic"\n', "choose one of loop, midpoint"),

@@ -158,7 +158,7 @@ def read(path: Path) -> Readings:
     marks = [row["mark"] for row in rows]
     twice = [mark for k, mark in enumerate(marks) if mark in marks[:k]]
     if twice:
-        msg = f"{path} has two lines for {twice[0]!r}, which would count double; keep one, with the mean of its readings"
+        msg = f"{path} has two lines for {twice[0]!r}; keep one, with the mean of its readings"
         raise InputError(msg)
     values = np.array([[_number(path, row, name) for name in COLUMNS[1:]] for row in rows]).reshape(-1, 5)
     sheet = [_number(path, {"mark": "# sheet_mm", "sheet_mm": v}, "sheet_mm") for v in said["sheet_mm"].split()]
