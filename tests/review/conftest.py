@@ -4,6 +4,7 @@ import shutil
 
 import pytest
 from playwright.sync_api import sync_playwright
+from shared import built_once
 
 from lce_workbench.cli import main
 
@@ -14,10 +15,17 @@ surface = "dome"
 width_mm = 4.0
 [domains]
 size_um = 400.0
+[marks]
+grating = false
+fields = []
+[solver]
+starts = 4
 [output]
 masks = ["gds"]
+cad = []
 pictures = false
 freecad = false
+drawings = false
 """
 
 ARGUMENTS = ["--no-sandbox", "--enable-unsafe-swiftshader"]
@@ -27,10 +35,13 @@ ARGUMENTS = ["--no-sandbox", "--enable-unsafe-swiftshader"]
 @pytest.fixture(scope="session")
 def built(tmp_path_factory):
     """An output folder with every stage."""
-    place = tmp_path_factory.mktemp("review")
-    (place / "dome.toml").write_text(JOB)
-    assert main(["build", str(place / "dome.toml"), "--quiet"]) == 0
-    return place / "out" / "dome"
+
+    def build(folder):
+        job = folder.with_suffix(".toml")
+        job.write_text(JOB)
+        assert main(["build", str(job), "--quiet", "--out", str(folder)]) == 0
+
+    return built_once(tmp_path_factory, "review", build)
 
 
 @pytest.fixture

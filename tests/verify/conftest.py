@@ -7,6 +7,7 @@ import shutil
 import sys
 
 import pytest
+from shared import built_once
 from tampering import refresh
 
 from lce_workbench import pipeline
@@ -37,9 +38,11 @@ drawings = false
 @pytest.fixture(scope="session")
 def built(tmp_path_factory):
     """What the stages that are verified leave, but the FreeCAD document; all mask formats."""
-    folder = tmp_path_factory.mktemp("verify") / "built"
-    assert pipeline.build(jobfile.parse(JOB), folder.parent, folder, ["design", "predict", "mask", "cad"]) in {0, 1}
-    return folder
+
+    def build(folder):
+        assert pipeline.build(jobfile.parse(JOB), folder.parent, folder, ["design", "predict", "mask", "cad"]) in {0, 1}
+
+    return built_once(tmp_path_factory, "verify", build)
 
 
 @pytest.fixture
