@@ -36,6 +36,52 @@ def deleted(root):
     return found
 
 
+def strays(root):
+    """Objects copied without their cell, and objects that were dragged out of it."""
+    import FreeCAD
+    from missing_steps import message
+
+    doc, found = opened(root), {}
+    from lce_workbench.app import cells, session
+
+    other = FreeCAD.newDocument("Strays")
+    for name in ("Design", "BottomLand", "SheetParameters", "Mask"):
+        other.copyObject(doc.getObject(name), False).touch()
+        other.recompute()
+        found[name] = message(lambda: cells.the_cell(other, other.Objects[-1:]))[-1:]
+    for name in ("SheetParameters", "Design"):
+        doc.Cell.removeObject(doc.getObject(name))
+        doc.recompute()
+        found[f"{name} out"] = [cells.cells(doc) == [doc.Cell], message(lambda: session.plates(doc.Cell))[-1:]]
+        doc.Cell.addObject(doc.getObject(name))
+        doc.recompute()
+    found["in"] = [message(lambda: session.plates(doc.Cell)), [o.Name for o in doc.Objects if not o.isValid()]]
+    return found
+
+
+def moved(root, folder):
+    """A file that was renamed and moved, opened, changed, saved elsewhere, and changed again."""
+    import shutil
+    from pathlib import Path
+
+    import FreeCAD
+
+    doc, place = opened(root), Path(folder) / "sub folder ü"
+    from lce_workbench.app import session
+
+    place.mkdir()
+    doc.saveAs(f"{folder}/a.FCStd")
+    FreeCAD.closeDocument(doc.Name)
+    shutil.move(f"{folder}/a.FCStd", place / "b.FCStd")
+    doc = FreeCAD.openDocument(str(place / "b.FCStd"))
+    session.set_parameters(doc.Cell, {"sheet.gap_um": 150.0})
+    doc.saveAs(f"{folder}/again.FCStd")
+    shutil.rmtree(place)
+    session.set_parameters(doc.Cell, {"channels.depth_um": 0.8})
+    invalid = [o.Name for o in doc.Objects if not o.isValid()]
+    return [doc.Design.Status, invalid, doc.BottomLand.Shape.BoundBox.ZLength]
+
+
 def copied(root, folder):
     """A renamed cell, its copy, and a second document open at the same time."""
     import shutil
@@ -63,6 +109,33 @@ def copied(root, folder):
     found["depths"] = [land.Shape.BoundBox.ZLength for land in lands]
     found["invalid"] = [o.Name for d in (doc, other) for o in d.Objects if not o.isValid()]
     found["bills"] = [c.Name for c in (first, second) for o in c.Group if o.Name.startswith("BillOf")]
+    return found
+
+
+def undone(folder):
+    """A cell is undone while its panel works; then its document is saved while another one does."""
+    import FreeCAD
+    import gui_hands
+
+    gui_hands.activate()
+    doc, found = FreeCAD.newDocument("Undone"), {}
+    doc.UndoMode = 1
+    for meddle in ("undo", "save"):
+        gui_hands.run("NewCell")
+        gui_hands.press("Ok")
+        gui_hands.run("Design")
+        gui_hands.press("Ok")
+        gui_hands.until(lambda: "energy" in gui_hands.widget("stage").text())
+        if meddle == "undo":
+            doc.undo()
+            gui_hands.until(lambda: not gui_hands.is_open(), 20)
+            found["left"] = [o.Name for o in doc.Objects]
+        else:
+            doc.saveAs(f"{folder}/saved.FCStd")
+            gui_hands.widget("stop").click()
+            gui_hands.until(lambda: "stopped" in gui_hands.widget("reason").text())
+            gui_hands.press("Cancel")
+            found["saved"] = [doc.Design.Status, gui_hands.is_open(), doc.FileName]
     return found
 
 

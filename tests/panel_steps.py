@@ -114,7 +114,7 @@ PRESETS = {
     "Design": ("Mylar 150 um", {"sheet.gap_um": 150.0}),
     "Plates": ("Microscope slide 75 x 25 x 1 mm", {"plates.width_mm": 75.0, "plates.height_mm": 25.0}),
     "ChannelWindow": ("2 um / 2 um / 1.5 um (the paper's former dimensions)", {"channels.depth_um": 1.5}),
-    "Mask": ("2 um mode", {"output.writer_um": 2.0}),
+    "Mask": ("0.6 um mode", {"output.writer_um": 0.6}),
 }
 """Step -> preset and what it sets."""
 
@@ -136,6 +136,10 @@ def presets(_=""):
         pump(0.1)
         found["shown"][name] = [{key: read(key) for key in values}, widget("reason").text()]
         press("Cancel")
+    run("Mask")
+    write("output.writer_um", "2 um")
+    found["coarse"] = [press("Ok"), is_open(), widget("reason").text()]
+    press("Cancel")
     found["tables"] = {name: list(rows) for name, rows in table().items()}
     run("NewCell")
     material = widget("material.preset")

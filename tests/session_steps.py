@@ -78,6 +78,7 @@ def refused(session, cell):
     """Sentences for wrong settings, which change nothing."""
     before = session.job(cell)
     wrong = [{"sheet.gap_um": -1.0}, {"sheet.gap": 1.0}, {"channels.depth_um": 60.0}, {"target.mesh": "/no/such.stl"}]
+    wrong += [{"marks.label": "ä"}, {"output.writer_um": 2.0}]
     said = [message(lambda s=settings: session.set_parameters(cell, s)) for settings in wrong]
     return [*said, session.job(cell) == before]
 

@@ -16,7 +16,8 @@ from lce_workbench.core.job import Job
 
 def cells(doc: Any) -> list[Any]:
     """The cells of a document: what holds a design."""
-    return [design.getParentGeoFeatureGroup() for design in doc.Objects if kind_of(design) == "DesignData"]
+    found = (design.getParentGeoFeatureGroup() for design in doc.Objects if kind_of(design) == "DesignData")
+    return [cell for cell in found if cell is not None]  # a design may have been copied or moved out of its cell
 
 
 def kind_of(obj: Any) -> str:

@@ -28,6 +28,7 @@ from lce_workbench.app.properties import properties
 from lce_workbench.app.results import CURRENT
 from lce_workbench.core import jobfile
 from lce_workbench.core.job import Job
+from lce_workbench.core.mask import refuse_unwritable
 from lce_workbench.outputs import as_record, read_manifest
 
 Settings = Mapping[str, Any]
@@ -65,7 +66,7 @@ def job_with(job: Job, settings: Settings) -> Job:
     Raises
     ------
     InputError
-        A setting is unknown or out of its limits, or the values contradict each other.
+        A setting is unknown or out of its limits, the values contradict each other, or no mask can hold them.
     """
     table = tomllib.loads(jobfile.dump(job))
     for name, value in settings.items():
@@ -74,7 +75,10 @@ def job_with(job: Job, settings: Settings) -> Job:
         part[key] = list(value) if isinstance(value, tuple) else value
         if value is None:
             del part[key]
-    return jobfile.parse(jobfile.dump(jobfile.from_table(table, "cell")), "cell")
+    found = jobfile.parse(jobfile.dump(jobfile.from_table(table, "cell")), "cell")
+    if any(name.startswith(("channels.", "marks.", "output.")) for name in settings):
+        refuse_unwritable(found)
+    return found
 
 
 def job(cell: Any) -> Job:

@@ -33,7 +33,7 @@ class Panel:
 
     def __init__(self, step: Step, doc: Any, cell: Any = None, source: Any = None) -> None:
         self.step, self.doc, self.cell, self.source = step, doc, cell, source
-        self.name = doc.Name
+        self.name, self.cell_name = doc.Name, cell.Name if cell else ""
         self.former = session.job(cell) if cell else _first(step, source)
         self.running: Running | None = None
         self.closed = False
@@ -242,8 +242,8 @@ class Panel:
     # What happens meanwhile
 
     def show(self, stage: str, fraction: float) -> None:
-        """Show how far the work is; it ends with its document."""
-        if self.gone():
+        """Show how far the work is; it ends with its document, or with its cell."""
+        if self.lost():
             self.reject()
             return
         energy = f", {tr('energy')} {stage.energy:.3e}" if isinstance(stage, Stage) else ""
@@ -258,8 +258,9 @@ class Panel:
 
     def ended(self, reason: str, settings: dict[str, Any]) -> None:
         """The work is over: apply it, or say why not."""
-        if self.gone():
-            self.close()
+        if self.lost():
+            self.running = None
+            self.reject()
             return
         self.running = None
         self.progress.setVisible(False)
@@ -319,6 +320,10 @@ class Panel:
     def gone(self) -> bool:
         """Whether the document was closed meanwhile."""
         return self.name not in FreeCAD.listDocuments()
+
+    def lost(self) -> bool:
+        """Whether the document was closed, or the cell deleted or undone."""
+        return self.gone() or bool(self.cell_name and self.doc.getObject(self.cell_name) is None)
 
 
 def _widen(width: int) -> None:

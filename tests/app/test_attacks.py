@@ -30,6 +30,32 @@ def test_copies_and_other_documents_do_not_know_of_each_other(freecad, tmp_path)
     assert len(set(found["bills"])) == len(found["bills"])
 
 
+def test_objects_without_a_cell_are_told_and_stop_nothing(freecad):
+    found = freecad.console(steps.strays, root=ROOT)  # FreeCAD itself prints what a recompute raises
+    for name in ("Design", "BottomLand", "SheetParameters", "Mask"):
+        assert "there is no cell in this document; start with New cell" in found[name][0]
+    assert found["SheetParameters out"] == [True, []]  # it is still found, by what uses it
+    assert not found["Design out"][0]
+    assert "has lost its design" in found["Design out"][1][0]
+    assert found["in"] == [[], []]
+
+
+def test_a_moved_file_takes_everything_along(freecad, tmp_path):
+    status, invalid, depth = freecad.console(steps.moved, root=ROOT, folder=tmp_path)
+    assert "Traceback" not in freecad.said
+    assert status.startswith("current")
+    assert invalid == []
+    assert depth == pytest.approx(0.8e-3)
+
+
+def test_a_cell_undone_while_its_panel_works_takes_the_panel_along(freecad, tmp_path):
+    with display() as screen:
+        found = freecad.window(screen, steps.undone, folder=tmp_path)
+    assert "Traceback" not in freecad.said
+    assert found["left"] == []
+    assert found["saved"] == ["not computed", False, f"{tmp_path}/saved.FCStd"]
+
+
 def test_a_document_closed_while_its_panel_works_takes_the_panel_along(freecad):
     with display() as screen:
         found = freecad.window(screen, steps.closed, root=ROOT)

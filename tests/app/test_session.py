@@ -54,7 +54,9 @@ def test_a_result_is_current_once_it_is_made(done):
 
 
 def test_a_wrong_setting_is_one_sentence_and_changes_nothing(done):
-    gap, unknown, deep, missing, unchanged = done["refused"]
+    gap, unknown, deep, missing, label, coarse, unchanged = done["refused"]
+    assert "marks.label" in label
+    assert "channels.width_um = 1 is finer than output.writer_um = 2 um" in coarse
     assert "sheet.gap_um is -1 um" in gap
     assert "did you mean gap_um?" in unknown
     assert "channels.depth_um = 60 is not smaller than" in deep

@@ -48,8 +48,11 @@ def test_presets_fill_the_fields_and_are_all_offered(screen, freecad):
     found = freecad.window(screen, steps.presets)
     assert "Traceback" not in freecad.said
     for name, (_, values) in steps.PRESETS.items():
-        assert found["shown"][name] == [values, ""]
+        undesigned = "Cell is not designed yet; run Design first" if name == "ChannelWindow" else ""
+        assert found["shown"][name] == [values, undesigned]
         assert found["offered"][name] in found["tables"].values()
+    assert found["coarse"][:2] == [False, True]
+    assert "is finer than output.writer_um = 2 um" in found["coarse"][2]
     assert set(material.presets()) <= set(found["materials"])
     assert found["job"][-1] == "rm82-pdt-1to1-max"
 
