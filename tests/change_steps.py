@@ -10,10 +10,8 @@ CHANGES = {
 }
 
 
-def changed(folder, profile=""):
-    """Parameters changed while the domain table is open: seconds of the clock and of the processor, what recomputed."""
-    import cProfile
-
+def changed(folder):
+    """Parameter -> seconds of the clock, of this thread and of all threads, and what was recomputed."""
     from gui_hands import activate, pump, run
     from session_steps import watch
     from view_steps import opened
@@ -22,19 +20,14 @@ def changed(folder, profile=""):
 
     activate()
     cell = opened(folder)
-    doc, found = cell.Document, {}
+    found = {}
     run("Domains")
     pump(1.0)
-    recomputed = watch(doc)
+    recomputed = watch(cell.Document)
     for name, settings in CHANGES.items():
-        profiler, clock, began = cProfile.Profile(), time.monotonic(), time.process_time()
-        if name == profile:
-            profiler.enable()
+        clock, own, whole = time.monotonic(), time.thread_time(), time.process_time()
         session.set_parameters(cell, settings)
-        spent = time.process_time() - began
-        if name == profile:
-            profiler.dump_stats(f"{folder}/profile")
+        spent = time.monotonic() - clock, time.thread_time() - own, time.process_time() - whole
         pump(0.5)
-        found[name] = [round(time.monotonic() - clock - 0.5, 2), round(spent, 2), recomputed()]
-    found["domains_"] = doc.Design.Domains
+        found[name] = [*(round(seconds, 2) for seconds in spent), recomputed()]
     return found

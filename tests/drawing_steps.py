@@ -20,6 +20,7 @@ def draw(folder, job, changes):
     take_design(new_cell(doc, values), Path(folder) / "design.npz", values)
     pages = drawings.add_pages(doc)
     found = {"first": read(doc), "objects": len(doc.Objects)}
+    found["order"] = [[view.TypeId for view in page.Views] for page in pages]
     out = Path(folder) / "drawings"
     out.mkdir()
     drawings.export(pages, out)

@@ -169,11 +169,11 @@ def add_pages(doc: Any) -> list[Any]:
     for sheet in sheets(*_now(design)):
         page = _page(doc, sheet, subject)
         common = {"Sheet": sheet.name, "Design": design, "Parameters": parameters}
-        _symbol(doc, page, sheet, common, group)
         for view in sheet.views:
             source = _drawn(doc, "Part::FeaturePython", DrawnFigure, f"{sheet.name[2:]}_{view.figure.name}", group)
             _set(source, Figure=view.figure.name, **common)
             made.append((_view(doc, page, view, source), view, page))
+        _symbol(doc, page, sheet, common, group)  # after the views, whose faces would lie on it in the window
         pages.append(page)
     recompute(pages)
     for view, placed, page in made:

@@ -137,6 +137,12 @@ def test_techdraw_measures_what_the_job_says(drawn, plan):
     assert_measured(drawn[1]["first"], plan, JOB_NOW)
 
 
+def test_fills_and_words_lie_above_the_views_faces(drawn):
+    for types in drawn[1]["order"]:
+        last = max(k for k, kind in enumerate(types) if kind == "TechDraw::DrawViewPart")
+        assert types.index("TechDraw::DrawViewSymbol") > last
+
+
 def test_dimensions_follow_the_parameters(drawn, plan):
     values = ("sheet.gap_um=100", "channels.depth_um=0.5", "channels.width_um=2", "spacer.strip_mm=3")
     now = jobfile.parse(JOB, settings=values)
