@@ -36,6 +36,41 @@ def deleted(root):
     return found
 
 
+def broken(folder):
+    """Meshes that are none, as targets: what is said, and what of the cell has changed."""
+    from pathlib import Path
+
+    import FreeCAD
+    from gui_hands import differences, state
+    from missing_steps import message
+
+    import lce_workbench  # noqa: F401
+    from lce_workbench import packages
+
+    packages.append()
+    from lce_workbench.app import session
+
+    found = {}
+    for name, text in MESHES.items():
+        path = Path(folder) / name
+        path.write_text(text)
+        doc = FreeCAD.newDocument("Broken")
+        cell = session.new_cell(doc, {"target.mesh": str(path), "sheet.width_mm": 3.0})
+        former = state(doc)
+        found[name] = [message(lambda cell=cell: session.design(cell)), differences(former, state(doc))]
+    return found
+
+
+MESHES = {
+    "words.stl": "this is not a mesh\n",
+    "empty.obj": "",
+    "nan.off": "OFF\n4 2 0\n0 0 0\n1 0 0\nnan 1 0\n1 1 0\n3 0 1 2\n3 1 3 2\n",
+    "points.off": "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n",
+    "flat.off": "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n",
+    "closed.off": "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n",
+}
+
+
 def strays(root):
     """Objects copied without their cell, and objects that were dragged out of it."""
     import FreeCAD

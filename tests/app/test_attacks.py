@@ -30,6 +30,17 @@ def test_copies_and_other_documents_do_not_know_of_each_other(freecad, tmp_path)
     assert len(set(found["bills"])) == len(found["bills"])
 
 
+def test_broken_meshes_are_told_in_one_sentence_and_change_nothing(freecad, tmp_path):
+    found = freecad.console(steps.broken, folder=tmp_path)
+    assert "Traceback" not in freecad.said
+    for name, (said, changed) in found.items():
+        assert said, name
+        assert said[1].count("\n") == 0
+        assert len(said[1]) > 20
+        assert "Error" not in said[1]
+        assert changed == [], name
+
+
 def test_objects_without_a_cell_are_told_and_stop_nothing(freecad):
     found = freecad.console(steps.strays, root=ROOT)  # FreeCAD itself prints what a recompute raises
     for name in ("Design", "BottomLand", "SheetParameters", "Mask"):
