@@ -24,6 +24,8 @@ from lce_solver.types import Design, Finding, Flattening, Floats, Material, Prog
 SMOOTHING = 0.002
 """Takes the worst jumps of the director for no error of the stretches to speak of. Ten times as much halves the jumps
 on a real face, but the sheet then ends farther from it."""
+MOST_SMOOTHING, MOST_GAIN = 1e3, 1e3
+"""Far beyond what is of use, far from where the solver's matrices lose their digits."""
 SAME = 1e-3
 """Finalists whose scores differ by less than this part are one solution."""
 SIDEWAYS = 0.1
@@ -71,12 +73,21 @@ def designs(
     Raises
     ------
     InputError
-        Width or thickness is not a positive length.
+        Width or thickness is not a positive length, or a setting is out of its range.
     """
     for name, length in (("width", width), ("thickness", thickness)):
         if not (np.isfinite(length) and length > 0):
             msg = f"the sheet's {name} is {length:g} mm; give a positive length"
             raise InputError(msg)
+    _check_settings(
+        starts=(starts, 1, np.inf),
+        max_iterations=(max_iterations, 1, np.inf),
+        tolerance=(tolerance, 0, 1),
+        smoothing=(smoothing, 0, MOST_SMOOTHING),
+        twist_limit=(twist_limit, 0, np.inf),
+        twist_filter=(twist_filter, 0, np.finfo(float).max),
+        twist_gain=(twist_gain, -MOST_GAIN, MOST_GAIN),
+    )
     stop = Stop(tolerance, max_iterations)
     finalists, competed = compete(surface, material, starts, stop, progress, smoothing=smoothing)
     for one in _distinct(finalists):
@@ -93,6 +104,14 @@ def designs(
             twist_limit=twist_limit,
         )
         yield replace(plan, findings=measured(plan, form, twist_limit))
+
+
+def _check_settings(**ranges: tuple[float, float, float]) -> None:
+    """Refuse, by name, what is not in its range: value, least, most."""
+    for name, (value, least, most) in ranges.items():
+        if not least <= value <= most:
+            msg = f"{name} is {value:g}; give a number from {least:g} to {most:g}"
+            raise InputError(msg)
 
 
 def _distinct(finalists: tuple[Finalist, ...]) -> list[Finalist]:

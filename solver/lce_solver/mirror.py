@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 
 from lce_solver.errors import InputError
 from lce_solver.geometry import face_areas
-from lce_solver.remesh import remesh
+from lce_solver.remesh import kind, remesh
 from lce_solver.topology import boundary_loops, edges
 from lce_solver.types import Floats, Ints, Surface
 
@@ -127,9 +127,10 @@ def even_mesh(surface: Surface, edge: float, known: float = 0.0) -> Surface:
     if plane is None or half is None:
         return remesh(surface, edge)
     try:
-        return _doubled(remesh(half, edge), plane)
+        made = _doubled(remesh(half, edge), plane)
     except InputError:  # the half may have a neck that the whole has not
         return remesh(surface, edge)
+    return made if kind(made.faces) == kind(surface.faces) else remesh(surface, edge)  # a small hole of the other half
 
 
 def _half(surface: Surface, plane: Plane, edge: float) -> Surface | None:

@@ -65,14 +65,14 @@ def remesh(surface: Surface, edge: float) -> Surface:
         if done and abs(ratio - 1) <= TOLERANCE:
             break
         request /= ratio
-    if _kind(found.faces) != _kind(unit.faces) or face_areas(found).min() < SLIVER * aim**2:
+    if kind(found.faces) != kind(unit.faces) or face_areas(found).min() < SLIVER * aim**2:
         msg = f"edges of {edge:g} are too long for the holes and necks of this surface; ask for shorter ones"
         raise InputError(msg)
     return Surface(found.vertices * scale + centre, found.faces)
 
 
-def _kind(faces: Ints) -> tuple[int, int]:
-    """Number of rims and Euler characteristic."""
+def kind(faces: Ints) -> tuple[int, int]:
+    """Number of rims, and Euler characteristic: whether two surfaces have the same holes and handles."""
     return len(boundary_loops(faces)), len(np.unique(faces)) - len(edges(faces)) + len(faces)
 
 

@@ -238,6 +238,25 @@ def test_sizes_must_be_lengths(width, thickness, name):
         design(flat(), LCE, width, thickness)
 
 
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("starts", 0),
+        ("max_iterations", 0),
+        ("tolerance", -1.0),
+        ("smoothing", np.nan),
+        ("smoothing", 1e9),
+        ("twist_limit", -1.0),
+        ("twist_limit", np.nan),
+        ("twist_filter", np.nan),
+        ("twist_gain", np.inf),
+    ],
+)
+def test_settings_out_of_range_are_refused_by_name(name, value):
+    with pytest.raises(InputError, match=rf"^{name} is .*; give a number from"):
+        design(flat(), LCE, 20.0, 0.1, **{name: value})
+
+
 def test_director_jump_is_the_turn_across_edges(plan):
     """One triangle turned by 80 degrees is 1 of 160, so a few of 200 edges jump; a turn by 180 degrees is none."""
     theta = plan.theta.copy()

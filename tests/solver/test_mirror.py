@@ -12,6 +12,7 @@ from lce_solver.metric import Stop
 from lce_solver.mirror import clipped, even_mesh, mirror_plane, twins
 from lce_solver.surface import check
 from lce_solver.surfaces import SURFACES
+from lce_solver.topology import boundary_loops
 
 FACE = SURFACES["face"](0.025)
 
@@ -46,6 +47,17 @@ def test_even_mesh_is_its_own_mirror_image():
     assert mean_edge(surface) == pytest.approx(0.06, rel=0.05)
     plane = mirror_plane(surface)
     np.testing.assert_allclose(plane.image(surface.vertices), surface.vertices[twin], atol=2e-5)
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+def test_a_small_hole_of_one_half_stays(side):
+    middle = FACE.vertices[FACE.faces].mean(axis=1)
+    width = np.ptp(FACE.vertices[:, 0])
+    away = np.linalg.norm(middle[:, :2] - (side * 0.25 * width, 0), axis=1)
+    pierced = check(FACE.vertices, FACE.faces[away > 0.02 * width])
+    assert len(boundary_loops(pierced.faces)) == 2
+    assert mirror_plane(pierced) is not None  # too small to be missed
+    assert len(boundary_loops(even_mesh(pierced, 0.06).faces)) == 2
 
 
 def test_symmetric_target_gets_a_symmetric_sheet():
