@@ -42,10 +42,11 @@ def shown(mesh, pictures):
             run(name)
             for field, text in fill.items():
                 write(field, text)
-            picture(pictures, f"{number}_{name}")
+            if name != "Design":
+                picture(pictures, f"{number}_{name}")
             press("Ok")
             if name == "Design":
-                pump(4)
+                until(lambda: "energy" in widget("stage").text())
                 picture(pictures, f"{number}_{name}_running")
             until(lambda: not is_open())
             FreeCADGui.Selection.clearSelection()

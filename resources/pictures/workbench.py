@@ -30,7 +30,7 @@ if __name__ == "__main__":
             freecad.window(screen, gui_tour.shown, mesh=str(Path(sys.argv[1]).resolve()), pictures=str(PICTURES))
         finally:
             manager.terminate()
-    for picture in sorted(PICTURES.glob("*.png")):
+    for picture in sorted(PICTURES.glob("[0-9]_*.png")):
         subprocess.run(
             ["convert", picture, "-colors", str(COLOURS), "-define", "png:compression-level=9", picture], check=True
         )
