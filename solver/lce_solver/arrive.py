@@ -20,9 +20,9 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from lce_solver.compare import align, residual_strain, vertex_areas
+from lce_solver.onset import Onset, onset
 from lce_solver.shell import Film, film_of, predict, settle
-from lce_solver.shell_energy import bent_form, bias, energy, hessian, pattern_forces
-from lce_solver.twist import twist
+from lce_solver.shell_energy import energy, hessian, pattern_forces
 from lce_solver.types import Design, Finding, Floats, Ints, Prediction, Progress, Severity, Status, line_angle, silent
 
 PARTS = {"dtheta": (1,), "full": (0, 1)}
@@ -37,15 +37,19 @@ ENOUGH = 0.05
 """A sheet as near as this to its target is left as it is [% of the diagonal]."""
 LOST = 1.0
 """Further away than this the sheet has not taken the target's shape [% of the diagonal]."""
-ROUNDS, STEPS, CUTS = 3, 5, 4
+ROUNDS, STEPS, CUTS = 3, 8, 6
 """Most heatings after which the sheet is corrected; steps of one correction; lengths tried of one step."""
 SAME = 1.05
 """A sheet heated from flat that ends within this factor of the corrected equilibrium has found it."""
+SAVED = 0.5
+"""A step that saves less than this share of what the linear problem says is tried shorter too."""
 GAIN = 0.95
 """A step that leaves more than this of the misfit is the last of its round."""
 BIAS = 0.1
 """Least energy by which the twist has to favour the target over its mirror image where the flat sheet buckles, in
 bending energies of a sheet without twist; doubled each time the sheet still ends in the mirror image."""
+FIRM = 0.8
+"""Share of it below which a sheet may still take the mirror image: of ten imperfections one did at 0.56."""
 THINNER = 10.0
 """A film as many times thinner tells whether stiffness keeps a sheet from its target."""
 CAPPED = 0.05
@@ -74,6 +78,16 @@ class Try:
         """Whether the sheet took the mirror image."""
         return self.mirror < self.rms
 
+    @property
+    def firm(self) -> bool:
+        """Whether the twist, and not chance, chose the side; or there is none to choose."""
+        return not self.onset.buckled or self.onset.favour >= FIRM * BIAS
+
+    @cached_property
+    def onset(self) -> Onset:
+        """Where it chose its side."""
+        return onset(self.film, self.heated, mirrored=self.mirrored)
+
 
 @dataclass(frozen=True, eq=False)
 class State:
@@ -98,6 +112,10 @@ class Correction:
     limit: float
     """Largest twist [rad]."""
     columns: tuple[int, ...]
+    lever: Floats
+    """(n_f,) as in `Onset`."""
+    least: float
+    """Favour that the correction may not give away for a shape nearer to the target."""
 
     @cached_property
     def mean(self) -> Any:
@@ -132,19 +150,45 @@ class Correction:
         twisted = np.clip(self.film.dtheta + turn[:, 1], -self.limit, self.limit)
         return replace(self.film, theta=self.film.theta + turn[:, 0], dtheta=twisted)
 
+    def sided(self, at: Onset, change: Floats, wanted: float) -> Correction:
+        """The same with twist that favours the target by ``wanted``, and the correction held to it."""
+        film = replace(self.film, dtheta=self.film.dtheta + at.lacking(wanted))
+        more = replace(self, film=film, lever=at.lever)
+        return replace(more, least=min(wanted, float(at.lever @ more.pattern(change).dtheta)))
+
     def state(self, x: Floats, change: Floats) -> State:
         """Measure the equilibrium ``x`` of a pattern."""
         off = x - align(self.plan.surface.vertices, x, self.weights).moved
+        return State(x, change, off, self.misfit(off, change))
+
+    def misfit(self, off: Floats, change: Floats) -> float:
+        """What is minimised, of distances (n_v, 3) and changes (n_v, k)."""
         flat = change.T.ravel()
-        misfit = float(self.weights @ (off**2).sum(axis=1) + flat @ (self.price @ flat))
-        return State(x, change, off, misfit)
+        return float(self.weights @ (off**2).sum(axis=1) + flat @ (self.price @ flat))
 
     def step(self, at: State) -> tuple[Floats, Floats]:
-        """Changes of shape (n_v, 3) and pattern (n_v, k) that minimise the linearised misfit.
-
-        One symmetric indefinite system: the two changes and the multipliers of the equilibrium.
-        """
+        """Changes of shape (n_v, 3) and pattern (n_v, k) that minimise the linearised misfit, the side held."""
         film = self.pattern(at.change)
+        matrix, right = self.linearised(film, at)
+        factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=1e-3, options={"SymmetricMode": True})
+
+        def solved(right: Floats) -> Floats:
+            found = factors.solve(right)
+            found += factors.solve(right - matrix @ found)
+            return np.asarray(found)
+
+        n, parts = len(at.x), len(self.columns)
+        side = np.zeros_like(right)
+        side[(2 + parts) * n : (3 + parts) * n] = (self.lever * (np.abs(film.dtheta) < self.limit)) @ self.mean
+        found = solved(right)
+        short = self.least - float(self.lever @ film.dtheta + side @ found)
+        if short > 0 and side.any():
+            held = solved(side)
+            found += short / float(side @ held) * held
+        return found[: 3 * n].reshape(n, 3), found[3 * n : (3 + parts) * n].reshape(parts, n).T
+
+    def linearised(self, film: Film, at: State) -> tuple[Any, Floats]:
+        """One symmetric indefinite system and its right-hand side: shape, pattern, multipliers of the equilibrium."""
         sheet, aim = film.sheet, film.at(film.material.lambda_)
         unit = replace(film, dtheta=np.ones_like(film.dtheta)).at(film.material.lambda_)
         n, n_f = len(at.x), len(film.theta)
@@ -160,34 +204,27 @@ class Correction:
         distance = sparse.diags(np.repeat(self.weights, 3))
         hold = -1e-16 * sparse.identity(3 * n)  # rigid motions have no multiplier
         matrix = sparse.bmat([[distance, None, stiff], [None, self.price, pull.T], [stiff, pull, hold]], format="csc")
-        right = np.concatenate(
-            [
-                -np.repeat(self.weights, 3) * at.off.ravel(),
-                -(self.price @ at.change.T.ravel()),
-                -scale * energy(sheet, aim, at.x)[1].ravel(),
-            ]
-        )
-        factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=1e-3, options={"SymmetricMode": True})
-        found = factors.solve(right)
-        found += factors.solve(right - matrix @ found)
-        parts = len(self.columns)
-        return found[: 3 * n].reshape(n, 3), found[3 * n : (3 + parts) * n].reshape(parts, n).T
+        off, cost = np.repeat(self.weights, 3) * at.off.ravel(), self.price @ at.change.T.ravel()
+        return matrix, -np.concatenate([off, cost, scale * energy(sheet, aim, at.x)[1].ravel()])
 
     def descend(self, at: State) -> State:
         """Gauss-Newton steps, each followed by the sheet's own relaxation, while they help."""
         for _ in range(STEPS):
-            moved, changed = self.step(at)
-            for cut in 3.0 ** -np.arange(CUTS):
-                change = at.change + cut * changed
-                there = self.state(settle(self.pattern(change), at.x + cut * moved).vertices, change)
-                if there.misfit < at.misfit:
-                    break
-            else:
-                return at
-            before, at = at, there
+            before, at = at, self.along(at, *self.step(at))
             if at.misfit > GAIN * before.misfit:
                 return at
         return at
+
+    def along(self, at: State, moved: Floats, changed: Floats) -> State:
+        """The best of shorter and shorter steps, down to the first that saves about what it should."""
+        best, hoped = at, at.misfit - self.misfit(at.off + moved, at.change + changed)
+        for cut in 0.5 ** np.arange(CUTS):
+            change = at.change + cut * changed
+            there = self.state(settle(self.pattern(change), at.x + cut * moved).vertices, change)
+            worse, best = there.misfit > best.misfit, min(best, there, key=lambda state: state.misfit)
+            if at.misfit - best.misfit > SAVED * cut * hoped or (worse and best is not at):
+                return best
+        return best
 
 
 def arrive(plan: Design, part: str, limit: float, progress: Progress = silent) -> tuple[Design, Finding]:
@@ -198,27 +235,25 @@ def arrive(plan: Design, part: str, limit: float, progress: Progress = silent) -
     part : a name in `PARTS`.
     limit : largest twist either way [rad].
     """
-    if plan.flattening.status is not Status.CONVERGED or len(plan.theta) > LARGEST:
-        return plan, _left_alone(plan)
+    if why := _hopeless(plan):
+        return plan, Finding("equilibrium", Severity.INFO, f"director and twist are not corrected by simulation: {why}")
     columns = PARTS[part]
     change = np.zeros((len(plan.uv), len(columns)))
-    film = film_of(plan)
+    work = Correction(plan, film_of(plan), limit, columns, lever=np.zeros_like(plan.theta), least=0.0)
     tries: list[Try] = []
     expected = 0.0
     for round_ in range(ROUNDS + 1):
         progress("equilibrium", round_ / (ROUNDS + 1))
-        tries.append(heated(plan, Correction(plan, film, limit, columns).pattern(change)))
-        if round_ == ROUNDS or tries[-1].rms < max(ENOUGH, SAME * expected):
+        tries.append(heated(plan, work.pattern(change)))
+        last = tries[-1]
+        if round_ == ROUNDS or (last.firm and last.rms < max(ENOUGH, SAME * expected)):
             break
-        wanted = BIAS * 2 ** sum(t.mirrored for t in tries[1:])
-        film = replace(film, dtheta=film.dtheta + lacking(tries[-1], wanted))
-        work = Correction(plan, film, limit, columns)
-        now = tries[-1].heated.vertices
-        start = plan.surface.vertices if tries[-1].rms > LOST else now
+        work = work.sided(last.onset, change, BIAS * 2 ** sum(t.mirrored for t in tries[1:]))
+        start = plan.surface.vertices if last.rms > LOST else last.heated.vertices
         at = work.descend(work.state(settle(work.pattern(change), start).vertices, change))
         change, expected = at.change, float(np.sqrt(np.average((at.off**2).sum(axis=1), weights=work.weights)))
         expected *= 100 / _diagonal(plan)
-    best = min(tries, key=lambda one: one.rms)
+    best = min(tries, key=lambda one: one.rms + LOST * (not one.firm))
     progress("equilibrium", 1.0)
     made = replace(plan, theta=line_angle(best.film.theta), dtheta=best.film.dtheta)
     return made, _told(plan, made, tries[0], best, limit)
@@ -234,39 +269,6 @@ def heated(plan: Design, film: Film) -> Try:
     return Try(film, found, direct * percent, mirror * percent)
 
 
-def lacking(tried: Try, wanted: float) -> Floats:
-    """(n_f,) twist to add [rad], so that it favours the target by ``wanted`` where the sheet first buckles.
-
-    There, and not at the end, the sheet decides for one side: a dome has no bending that twist could carry, but it
-    has some along its edge while it rises. The shape at that moment says which twist helps it most.
-    """
-    step, favour = favoured(tried)
-    film = tried.film
-    side = -1.0 if tried.mirrored else 1.0
-    if side * favour >= wanted:
-        return np.zeros_like(film.dtheta)
-    lambda_ = tried.heated.history[step].lambda_
-    hot, shape = replace(film.material, lambda_=lambda_), tried.heated.frames[step]
-    best = side * twist(bent_form(film.sheet, shape), film.theta, hot, film.thickness)
-    most = side * bias(film.sheet, _plain(film, lambda_), replace(film, dtheta=best).at(lambda_), shape)
-    added: Floats = min(1.0, (wanted - side * favour) / most) * best
-    return added
-
-
-def favoured(tried: Try) -> tuple[int, float]:
-    """The step of the heating after which the sheet is out of its plane, and how much the twist favours that side."""
-    off = [np.linalg.svd(x - x.mean(axis=0), compute_uv=False)[-1] / np.sqrt(len(x)) for x in tried.heated.frames]
-    step = int(np.argmax(np.append(off, np.inf) > tried.film.thickness))
-    step = min(step, len(off) - 1)
-    lambda_ = tried.heated.history[step].lambda_
-    film = tried.film
-    return step, bias(film.sheet, _plain(film, lambda_), film.at(lambda_), tried.heated.frames[step])
-
-
-def _plain(film: Film, lambda_: float) -> Any:
-    return replace(film, dtheta=np.zeros_like(film.dtheta)).at(lambda_)
-
-
 def _diagonal(plan: Design) -> float:
     return float(np.linalg.norm(np.ptp(plan.surface.vertices, axis=0)))
 
@@ -277,9 +279,16 @@ def _assemble(blocks: Floats, rows: Ints, columns: Ints, shape: tuple[int, int])
     return sparse.coo_matrix((blocks.ravel(), (row.ravel(), column.ravel())), shape=shape).tocsc()
 
 
-def _left_alone(plan: Design) -> Finding:
-    why = plan.flattening.status.value if len(plan.theta) <= LARGEST else f"more than {LARGEST} triangles take hours"
-    return Finding("equilibrium", Severity.INFO, f"director and twist are not corrected by simulation: {why}")
+def _hopeless(plan: Design) -> str:
+    """Why a design is left as it is; empty if it is not."""
+    if plan.flattening.status is not Status.CONVERGED:
+        return str(plan.flattening.status.value)
+    if len(plan.theta) > LARGEST:
+        return f"more than {LARGEST} triangles take hours"
+    size = np.linalg.norm(np.ptp(plan.uv, axis=0))
+    if abs(np.log(plan.material.along / plan.material.across)) < (plan.thickness / size) ** 2:
+        return "lambda is so near to 1 that a film of this thickness stays flat"
+    return ""
 
 
 def _told(plan: Design, made: Design, first: Try, best: Try, limit: float) -> Finding:
@@ -291,7 +300,7 @@ def _told(plan: Design, made: Design, first: Try, best: Try, limit: float) -> Fi
             f", and {first.rms:.2g}% before the simulation corrected the director (by {_rms(turned):.1f} deg rms, "
             f"{turned.max():.1f} at most) and the twist (by {_rms(twisted):.1f}, {twisted.max():.1f})"
         )
-    text += f"; where it buckles, its twist favours this side by {abs(favoured(best)[1]):.2g} of its bending energy"
+    text += f"; where it buckles, its twist favours this side by {abs(best.onset.favour):.2g} of its bending energy"
     short = best.rms > LOST
     if short:
         text += f"; {_obstacle(plan, best, limit)}"

@@ -222,15 +222,17 @@ def pattern_forces(sheet: Shell, aim: Reference, unit: Reference, x: Floats) -> 
     return forces
 
 
-def bias(sheet: Shell, plain: Reference, twisted: Reference, x: Floats) -> float:
-    """Energy by which the twist favours the shape over its mirror image, in bending energies of the plain sheet.
+def bias(sheet: Shell, plain: Reference, twisted: Reference, x: Floats) -> Floats:
+    """(n_f,) energy by which each triangle's twist favours the shape over its mirror image; their sum is the sheet's.
 
-    ``plain`` is what the sheet without twist wants to be. Positive: the shape costs less than its mirror image.
+    In bending energies of the plain sheet; ``plain`` is what the sheet without twist wants to be. Positive: the shape
+    costs less than its mirror image. Proportional to the twist.
     """
     form = _forms(sheet, x).second
     white = np.einsum("tij,tj->ti", plain.whitening, form)
     wanted = np.einsum("tij,tj->ti", plain.whitening, twisted.curvature)
-    return float(4 * np.vdot(white, wanted) / np.vdot(white, white))
+    favour: Floats = 4 * _dot(white, wanted) / np.vdot(white, white)
+    return favour
 
 
 def bent_form(sheet: Shell, x: Floats) -> Floats:

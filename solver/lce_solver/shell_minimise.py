@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lce_solver.errors import SolverError
 from lce_solver.types import Floats, Status
 
 MEMORY = 10
@@ -57,15 +58,18 @@ def minimise(
 ) -> Minimum:
     """Minimise from ``x`` (n_v, 3) until a step is expected to save less than ``tolerance``, an energy.
 
-    ``factorise(x)`` returns the solver of a positive definite approximation of the Hessian. No vertex moves further
-    than ``longest`` [mm] in one step. ``watch`` is called with the energy before every step and may raise.
+    ``factorise(x)`` returns the solver of a positive definite approximation of the Hessian; where it raises
+    `SolverError`, a triangle has collapsed, and the sheet is stuck. No vertex moves further than ``longest`` [mm] in
+    one step. ``watch`` is called with the energy before every step and may raise.
     """
     at = _Point(x, *energy(x))
     if not np.isfinite(at.energy):
         return Minimum(x, at.energy, Status.NOT_FINITE, 0, 0, np.nan)
     pairs: deque[tuple[Floats, Floats]] = deque(maxlen=MEMORY)
-    solve, age, factorisations, saving = factorise(x), 0, 1, np.inf
+    solve, age, factorisations, saving = _solver(factorise, x), 0, 1, np.inf
     for iteration in range(limit):
+        if solve is None:
+            return Minimum(at.x, at.energy, Status.STALLED, iteration, factorisations, saving)
         step = _direction(solve, pairs, at.gradient)
         saving = -float(np.vdot(at.gradient, step)) / 2
         watch(at.energy)
@@ -81,8 +85,16 @@ def minimise(
             at = found
         age += 1
         if found is None or (fraction < 1 and age >= PATIENCE) or age >= REFRESH:
-            solve, age, factorisations = factorise(at.x), 0, factorisations + 1
+            solve, age, factorisations = _solver(factorise, at.x), 0, factorisations + 1
     return Minimum(at.x, at.energy, Status.ITERATION_LIMIT, limit, factorisations, saving)
+
+
+def _solver(factorise: Callable[[Floats], Solve], x: Floats) -> Solve | None:
+    """None where the approximation is singular."""
+    try:
+        return factorise(x)
+    except SolverError:
+        return None
 
 
 def _direction(solve: Solve, pairs: deque[tuple[Floats, Floats]], gradient: Floats) -> Floats:

@@ -14,7 +14,7 @@ from lce_solver.design import design, renewed
 from lce_solver.shell import film_of, predict, settle
 from lce_solver.shell_energy import bias, energy, hessian, pattern_forces
 from lce_solver.surfaces import SURFACES
-from lce_solver.types import Severity, Surface
+from lce_solver.types import Material, Severity, Surface
 
 LIMIT = np.deg2rad(5.0)
 
@@ -52,7 +52,7 @@ def test_bias_is_the_cost_of_the_mirror_image():
     plain, twisted = hot(replace(flat, dtheta=0 * flat.dtheta)), hot(flat)
     here, mirrored = (energy(flat.sheet, twisted, x * (1, 1, sign))[0] for sign in (1, -1))
     bent = energy(flat.sheet, plain, x)[0] - energy(flat.sheet, replace(plain, thickness=0.0), x)[0]
-    assert bias(flat.sheet, plain, twisted, x) == pytest.approx((mirrored - here) / bent, rel=1e-9)
+    assert bias(flat.sheet, plain, twisted, x).sum() == pytest.approx((mirrored - here) / bent, rel=1e-9)
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +68,7 @@ def arrived(dome):
 
 def test_the_predicted_move_is_that_of_the_equilibrium(dome):
     """The derivative of the heated shape with respect to the pattern, against heating the changed pattern."""
-    work = Correction(dome, film_of(dome), LIMIT, (0, 1))
+    work = Correction(dome, film_of(dome), LIMIT, (0, 1), np.zeros_like(dome.theta), 0.0)
     change = np.zeros((len(dome.uv), 2))
     start = settle(work.film, dome.surface.vertices, tolerance=1e-13)
     at = work.state(start.vertices, change)
@@ -91,8 +91,24 @@ def test_a_dome_arrives_and_on_its_own_side(dome, arrived):
     assert np.abs(made.dtheta).max() <= LIMIT
     assert said.severity is Severity.INFO
     assert said.value < 0.1
+    assert heated(dome, film_of(made)).firm
+    assert not before.firm
     assert np.array_equal(made.uv, dome.uv)
     assert {one.check for one in renewed(made.findings, made, LIMIT)} == {one.check for one in dome.findings}
+
+
+def test_a_correction_holds_the_side(dome):
+    """Nearer to the target there is a design that leaves the side to chance."""
+    at = heated(dome, film_of(dome)).onset
+    change = np.zeros((len(dome.uv), 2))
+    work = Correction(dome, film_of(dome), LIMIT, (0, 1), np.zeros_like(dome.theta), 0.0).sided(at, change, 0.1)
+    assert at.favour < 0.01
+    favours = []
+    for held in (work, replace(work, least=-1.0)):
+        start = held.state(settle(held.pattern(change), dome.surface.vertices).vertices, change)
+        favours.append(held.lever @ held.pattern(held.along(start, *held.step(start)).change).dtheta)
+    assert favours[0] == pytest.approx(0.1, rel=1e-3)
+    assert favours[1] < 0.08
 
 
 def test_twist_alone_leaves_the_director(dome):
@@ -118,6 +134,14 @@ def test_a_twist_that_the_limit_cuts_off_is_told():
     _, said = arrive(plan, "full", limit)
     assert said.severity is Severity.WARNING
     assert "its twist is cut off at 1 deg" in said.message
+
+
+def test_a_sheet_that_cannot_leave_its_plane_is_left_alone():
+    plan = design(SURFACES["dome"](0.1), Material(1 - 1e-6, 0.5), 20.0, 0.1, starts=1, twist_limit=LIMIT)
+    made, said = arrive(plan, "full", LIMIT)
+    assert made is plan
+    assert "stays flat" in said.message
+    assert np.ptp(predict(film_of(plan), seed=1).vertices[:, 2]) < 0.1
 
 
 def test_large_sheets_are_left_alone(dome, monkeypatch):

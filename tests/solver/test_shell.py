@@ -294,6 +294,16 @@ def test_history_tells_the_heating_and_frames_end_in_the_result():
     assert found.iterations == sum(step.iterations for step in found.history)
 
 
+@pytest.mark.parametrize("strain", [1e-6, 1e-9, -1e-9, 1e-12])
+def test_a_sheet_that_hardly_stretches_stays_flat_at_once(strain):
+    """Below the strain of buckling, (thickness / size)^2, and however small, it only stretches and evens out."""
+    flat = cone_film(disk(8), material=Material(1 - strain, 0.5), thickness=0.02)
+    found = predict(flat, seed=0)
+    assert found.status is Status.CONVERGED
+    assert found.iterations < 10
+    assert apart(found.vertices, np.column_stack([flat.sheet.uv, 0 * flat.sheet.uv[:, 0]])) < 0.02 * flat.thickness
+
+
 def test_settled_sheet_stays():
     flat = cone_film(disk(6))
     found = predict(flat, seed=0, tolerance=1e-10)
@@ -324,6 +334,11 @@ def test_status_is_honest(monkeypatch):
     assert predict(flat, seed=0).status is Status.ITERATION_LIMIT
     broken = np.column_stack([flat.sheet.uv, np.full(len(flat.sheet.uv), np.nan)])
     assert settle(flat, broken).status is Status.NOT_FINITE
+    crushed = np.column_stack([flat.sheet.uv, np.zeros(len(flat.sheet.uv))])
+    tip, *base = flat.sheet.faces[40]
+    crushed[tip] = crushed[base].mean(axis=0)
+    crushed[tip, 2] = 1e-13
+    assert settle(flat, crushed).status is Status.STALLED
 
 
 def test_mistakes_are_told():
