@@ -91,9 +91,9 @@ def _require_formats(job: Job) -> None:
 
 
 def exit_code(records: Sequence[Mapping[str, Any]]) -> int:
-    """3 when the solver did not reach its tolerance, 1 when another finding is an error, else 0."""
-    errors = [r["check"] for r in records if r["severity"] == Severity.ERROR.value]
-    return 3 if "solver" in errors else int(has_error(records))
+    """3 when design or prediction did not reach its tolerance, 1 when another finding is an error, else 0."""
+    errors = {r["check"] for r in records if r["severity"] == Severity.ERROR.value}
+    return 3 if errors & {"solver", "prediction"} else int(has_error(records))
 
 
 def versions() -> dict[str, str]:

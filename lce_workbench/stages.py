@@ -152,8 +152,9 @@ def run_predict(run: Run) -> Findings:
 
 
 def predicted(judged: Comparison) -> Finding:
-    """Whether the heated sheet takes the target shape; a warning at most, for another path may end elsewhere."""
-    severity = Severity.INFO if judged.verdict is Verdict.TARGET else Severity.WARNING
+    """Whether the heated sheet takes the target shape; else a warning, for another path may end elsewhere."""
+    known = {Verdict.TARGET: Severity.INFO, Verdict.NOT_CONVERGED: Severity.ERROR}
+    severity = known.get(judged.verdict, Severity.WARNING)
     text = (
         f"{judged.verdict.value} ({judged.rms_pct:.2g}% rms, {judged.max_pct:.2g}% at most, of the target's diagonal)"
     )

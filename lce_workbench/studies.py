@@ -34,7 +34,7 @@ Row = dict[str, Any]
 
 SECONDS = 1.5
 """Of a processor for a sample of 1000 triangles, about; the time grows in proportion."""
-SAMPLES = 40
+SAMPLES, MOST = 40, 1_000_000
 
 
 def study(
@@ -78,6 +78,9 @@ def _require(name: str, samples: int) -> None:
         raise InputError(msg)
     if samples < (least := len(STUDIES[name].values)):
         msg = f"--samples {samples} is fewer than the {least} values of the study {name}; give at least {least}"
+        raise InputError(msg)
+    if samples > MOST:
+        msg = f"--samples {samples} is too many; give at most {MOST}"
         raise InputError(msg)
 
 

@@ -265,7 +265,7 @@ class PredictionSpec:
     )
     density_kg_m3: float = param(1200.0, "density of the film", unit="kg/m3", above=0.0, high=1e5)
     modulus_MPa: float = param(
-        1.0, "Young's modulus of the hot film, which resists its weight", unit="MPa", above=0.0, high=1e6
+        1.0, "Young's modulus of the hot film, which resists its weight", unit="MPa", low=1e-4, high=1e6
     )
     film: bool = param(False, "write the heating as an animation, prediction_film.glb")
 

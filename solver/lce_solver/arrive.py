@@ -37,12 +37,13 @@ ENOUGH = 0.05
 """A sheet as near as this to its target is left as it is [% of the diagonal]."""
 LOST = 1.0
 """Further away than this the sheet has not taken the target's shape [% of the diagonal]."""
-ROUNDS, STEPS, CUTS = 3, 8, 6
+ROUNDS, STEPS, CUTS = 3, 5, 4
 """Most heatings after which the sheet is corrected; steps of one correction; lengths tried of one step."""
 SAME = 1.05
 """A sheet heated from flat that ends within this factor of the corrected equilibrium has found it."""
 SAVED = 0.5
-"""A step that saves less than this share of what the linear problem says is tried shorter too."""
+"""A step along which the side is held, and that saves less than this share of what the linear problem says, is tried
+shorter too: it turns the director farther."""
 GAIN = 0.95
 """A step that leaves more than this of the misfit is the last of its round."""
 BIAS = 0.1
@@ -115,7 +116,7 @@ class Correction:
     lever: Floats
     """(n_f,) as in `Onset`."""
     least: float
-    """Favour that the correction may not give away for a shape nearer to the target."""
+    """Favour that the correction may not give away for a shape nearer to the target; -inf: all of it."""
 
     @cached_property
     def mean(self) -> Any:
@@ -150,11 +151,12 @@ class Correction:
         twisted = np.clip(self.film.dtheta + turn[:, 1], -self.limit, self.limit)
         return replace(self.film, theta=self.film.theta + turn[:, 0], dtheta=twisted)
 
-    def sided(self, at: Onset, change: Floats, wanted: float) -> Correction:
-        """The same with twist that favours the target by ``wanted``, and the correction held to it."""
+    def sided(self, at: Onset, change: Floats, wanted: float, *, hold: bool) -> Correction:
+        """The same with twist that favours the target by ``wanted``, and if asked for the correction held to it."""
         film = replace(self.film, dtheta=self.film.dtheta + at.lacking(wanted))
         more = replace(self, film=film, lever=at.lever)
-        return replace(more, least=min(wanted, float(at.lever @ more.pattern(change).dtheta)))
+        favour = float(at.lever @ more.pattern(change).dtheta)
+        return replace(more, least=min(wanted, favour) if hold else -np.inf)
 
     def state(self, x: Floats, change: Floats) -> State:
         """Measure the equilibrium ``x`` of a pattern."""
@@ -217,12 +219,13 @@ class Correction:
 
     def along(self, at: State, moved: Floats, changed: Floats) -> State:
         """The best of shorter and shorter steps, down to the first that saves about what it should."""
-        best, hoped = at, at.misfit - self.misfit(at.off + moved, at.change + changed)
-        for cut in 0.5 ** np.arange(CUTS):
+        hoped = at.misfit - self.misfit(at.off + moved, at.change + changed)
+        best, share = at, SAVED if np.isfinite(self.least) else 0.0
+        for cut in 3.0 ** -np.arange(CUTS):
             change = at.change + cut * changed
             there = self.state(settle(self.pattern(change), at.x + cut * moved).vertices, change)
             worse, best = there.misfit > best.misfit, min(best, there, key=lambda state: state.misfit)
-            if at.misfit - best.misfit > SAVED * cut * hoped or (worse and best is not at):
+            if at.misfit - best.misfit > share * cut * hoped or (worse and best is not at):
                 return best
         return best
 
@@ -239,7 +242,7 @@ def arrive(plan: Design, part: str, limit: float, progress: Progress = silent) -
         return plan, Finding("equilibrium", Severity.INFO, f"director and twist are not corrected by simulation: {why}")
     columns = PARTS[part]
     change = np.zeros((len(plan.uv), len(columns)))
-    work = Correction(plan, film_of(plan), limit, columns, lever=np.zeros_like(plan.theta), least=0.0)
+    work = Correction(plan, film_of(plan), limit, columns, lever=np.zeros_like(plan.theta), least=-np.inf)
     tries: list[Try] = []
     expected = 0.0
     for round_ in range(ROUNDS + 1):
@@ -248,7 +251,8 @@ def arrive(plan: Design, part: str, limit: float, progress: Progress = silent) -
         last = tries[-1]
         if round_ == ROUNDS or (last.firm and last.rms < max(ENOUGH, SAME * expected)):
             break
-        work = work.sided(last.onset, change, BIAS * 2 ** sum(t.mirrored for t in tries[1:]))
+        wanted = BIAS * 2 ** sum(t.mirrored for t in tries[1:])
+        work = work.sided(last.onset, change, wanted, hold=round_ > 0 and last.rms < LOST)
         start = plan.surface.vertices if last.rms > LOST else last.heated.vertices
         at = work.descend(work.state(settle(work.pattern(change), start).vertices, change))
         change, expected = at.change, float(np.sqrt(np.average((at.off**2).sum(axis=1), weights=work.weights)))

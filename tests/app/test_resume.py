@@ -11,7 +11,7 @@ from small import digests
 
 from lce_solver.errors import EnvironmentFault
 from lce_workbench.checkpoint import place
-from lce_workbench.cli import Bar
+from lce_workbench.cli import Bar, main
 from lce_workbench.core import jobfile
 from lce_workbench.outputs import read_design
 from lce_workbench.pipeline import build
@@ -49,6 +49,12 @@ def test_a_resumed_heating_equals_the_undisturbed_one(designed):
     assert heated(designed)[0] == 0.5  # two of four steps were not done again
     assert digests(designed) == undisturbed
     assert [p.name for p in designed.parent.iterdir()] == [designed.name]
+
+
+def test_a_heating_that_does_not_converge_is_an_error(designed, monkeypatch, capsys):
+    monkeypatch.setattr("lce_solver.shell.LIMIT", 2)
+    assert main(["predict", str(designed), "--quiet"]) == 3
+    assert "error: the simulation did not converge, so it says nothing" in capsys.readouterr().err
 
 
 def test_a_heating_of_another_sheet_is_not_gone_on_with(designed):

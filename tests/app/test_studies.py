@@ -73,6 +73,7 @@ def test_the_table_counts_what_the_samples_say(designed):
     [
         (["study", "twists", "."], "'twists' is unknown; known are robustness"),
         (["study", "twist", "DIR", "--samples", "3"], "--samples 3 is fewer than the 6 values of the study twist"),
+        (["study", "twist", "DIR", "--samples", "1000001"], "--samples 1000001 is too many; give at most 1000000"),
         (["study", "twist", "/nowhere"], "is not a readable design"),
     ],
 )

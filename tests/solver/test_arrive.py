@@ -68,7 +68,7 @@ def arrived(dome):
 
 def test_the_predicted_move_is_that_of_the_equilibrium(dome):
     """The derivative of the heated shape with respect to the pattern, against heating the changed pattern."""
-    work = Correction(dome, film_of(dome), LIMIT, (0, 1), np.zeros_like(dome.theta), 0.0)
+    work = Correction(dome, film_of(dome), LIMIT, (0, 1), np.zeros_like(dome.theta), -np.inf)
     change = np.zeros((len(dome.uv), 2))
     start = settle(work.film, dome.surface.vertices, tolerance=1e-13)
     at = work.state(start.vertices, change)
@@ -101,10 +101,12 @@ def test_a_correction_holds_the_side(dome):
     """Nearer to the target there is a design that leaves the side to chance."""
     at = heated(dome, film_of(dome)).onset
     change = np.zeros((len(dome.uv), 2))
-    work = Correction(dome, film_of(dome), LIMIT, (0, 1), np.zeros_like(dome.theta), 0.0).sided(at, change, 0.1)
+    work = Correction(dome, film_of(dome), LIMIT, (0, 1), np.zeros_like(dome.theta), -np.inf).sided(
+        at, change, 0.1, hold=True
+    )
     assert at.favour < 0.01
     favours = []
-    for held in (work, replace(work, least=-1.0)):
+    for held in (work, replace(work, least=-np.inf)):
         start = held.state(settle(held.pattern(change), dome.surface.vertices).vertices, change)
         favours.append(held.lever @ held.pattern(held.along(start, *held.step(start)).change).dtheta)
     assert favours[0] == pytest.approx(0.1, rel=1e-3)
