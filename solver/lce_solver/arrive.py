@@ -252,7 +252,7 @@ def arrive(plan: Design, part: str, limit: float, progress: Progress = silent) -
         if round_ == ROUNDS or (last.firm and last.rms < max(ENOUGH, SAME * expected)):
             break
         wanted = BIAS * 2 ** sum(t.mirrored for t in tries[1:])
-        work = work.sided(last.onset, change, wanted, hold=round_ > 0 and last.rms < LOST)
+        work = work.sided(last.onset, change, wanted, hold=any(t.rms < LOST and not t.firm for t in tries[1:]))
         start = plan.surface.vertices if last.rms > LOST else last.heated.vertices
         at = work.descend(work.state(settle(work.pattern(change), start).vertices, change))
         change, expected = at.change, float(np.sqrt(np.average((at.off**2).sum(axis=1), weights=work.weights)))

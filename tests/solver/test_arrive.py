@@ -132,7 +132,7 @@ def test_a_film_too_thick_for_its_target_is_told():
 def test_a_twist_that_the_limit_cuts_off_is_told():
     """Only twist can roll up a rectangle, and here it may not be large enough."""
     limit = np.deg2rad(1.0)
-    plan = design(DEEP["scroll"](0.15), LCE, 20.0, 0.1, starts=1, twist_limit=limit)
+    plan = design(DEEP["scroll"](0.2), LCE, 20.0, 0.1, starts=1, twist_limit=limit)
     _, said = arrive(plan, "full", limit)
     assert said.severity is Severity.WARNING
     assert "its twist is cut off at 1 deg" in said.message
