@@ -29,8 +29,8 @@ MESHES = {"face.obj": 1.0, "hemisphere.obj": 0.15, "saddle.obj": 0.08}
 FOLDER = Path(os.environ.get("LCE_MESHES", ""))
 REACHED = {"mushroom": 0.6, "stairs": 0.6, "finger": 0.5, "bell": 0.5, "cap 120": 0.5, "scroll": 0.6}
 """Deep targets with their lambda; all but those of `MISSED` end within 2 % of their targets."""
-MISSED = {"scroll": "its twist is cut off", "stairs": "its director misses"}
-"""What is said of those that do not."""
+MISSED = {"scroll": "its twist is cut off"}
+"""What is said of the one that does not."""
 
 
 def corrected(benchmark, job, base):
