@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import repeat
+from itertools import chain, repeat
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from lce_solver.cut import seams
 from lce_solver.design import designs, renewed
 from lce_solver.errors import SolverError
 from lce_solver.shell import film_of, predict, settle
-from lce_solver.types import Design, Finding, Progress, Severity, silent
+from lce_solver.types import Design, Finding, Material, Progress, Severity, Surface, silent
 from lce_workbench import checkpoint
 from lce_workbench.cluster import client, each
 from lce_workbench.core import align, jobfile, material, target
@@ -48,6 +48,8 @@ from lce_workbench.plates import Sheet, expose, measure
 
 Findings = tuple[Finding, ...]
 
+OFF = 1.25
+"""Domains as many times larger or smaller than asked for are made anew, at the scale that the first design showed."""
 FILM = "prediction_film.glb"
 """The heating as an animation."""
 
@@ -95,7 +97,20 @@ def solved(run: Run) -> tuple[Iterator[Design], Findings]:
     job = run.job
     matter, said = material.resolve(job.material, run.base)
     goal, told = target.resolve(job, matter, run.base)
-    plans = designs(
+    plans = designed(goal, matter, run)
+    first = next(plans)
+    off = target.off_size(first, job)
+    if job.target.remesh and not 1 / OFF <= off <= OFF:
+        goal, told = target.resolve(job, matter, run.base, times=1 / off)
+        plans = designed(goal, matter, run)
+        first = next(plans)
+    return chain([first], plans), (*said, *told)
+
+
+def designed(goal: Surface, matter: Material, run: Run) -> Iterator[Design]:
+    """The designs of one target at the job's width, the best first."""
+    job = run.job
+    return designs(
         goal,
         matter,
         width=job.sheet.width_mm,
@@ -106,7 +121,6 @@ def solved(run: Run) -> tuple[Iterator[Design], Findings]:
         smoothing=job.solver.smoothing,
         progress=run.progress,
     )
-    return plans, (*said, *told)
 
 
 def rebased(job: Job, base: Path, folder: Path) -> Job:

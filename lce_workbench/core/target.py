@@ -12,7 +12,7 @@ from lce_solver.cut import opened, proposed, seams
 from lce_solver.errors import InputError
 from lce_solver.facets import rounded
 from lce_solver.metric import Stop, flatten, lay_flat
-from lce_solver.mirror import even_mesh
+from lce_solver.mirror import even_mesh, mirror_plane, mismatch, twins
 from lce_solver.surface import face_areas, load, mean_edge, subdivide
 from lce_solver.surfaces import SURFACES
 from lce_solver.types import Design, Finding, Floats, Ints, Material, Severity, Surface
@@ -26,15 +26,19 @@ COARSE = 0.08
 """Edge of the trial mesh of a shipped surface, as a fraction of its size; enough to know the sheet's scale."""
 
 
-def resolve(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Finding, ...]]:
+def resolve(job: Job, material: Material, base: Path, times: float = 1.0) -> tuple[Surface, tuple[Finding, ...]]:
     """The target, its triangles about the size of the domains on the flat sheet (in the target's own unit).
+
+    Parameters
+    ----------
+    times : makes the edges so many times longer, where a design showed that the trial told the sheet's scale wrong.
 
     Raises
     ------
     InputError
         The mesh is not usable, or the surface's name is unknown.
     """
-    surface, found = _shipped(job, material) if job.target.surface else _meshed(job, material, base)
+    surface, found = _shipped(job, material, times) if job.target.surface else _meshed(job, material, base, times)
     return (turned(surface) if job.target.flip else surface), found
 
 
@@ -69,12 +73,12 @@ def _surface(name: str) -> Callable[[float], Surface]:
     return SURFACES[name]
 
 
-def _shipped(job: Job, material: Material) -> tuple[Surface, tuple[Finding, ...]]:
+def _shipped(job: Job, material: Material, times: float) -> tuple[Surface, tuple[Finding, ...]]:
     shape = _surface(job.target.surface)
     coarse = shape(COARSE)
     cuts = _cuts(coarse, job, material)
     coarse = opened(coarse, cuts)
-    edge = job.domains.size / (flat_edge(coarse, job, material) / mean_edge(coarse))
+    edge = times * job.domains.size / (flat_edge(coarse, job, material) / mean_edge(coarse))
     _require_budget(coarse, edge)
     fine = even_mesh(shape(edge), edge) if job.target.remesh else shape(edge)
     return opened(fine, cuts, straight=job.target.remesh), ()
@@ -84,10 +88,10 @@ def _cuts(trial: Surface, job: Job, material: Material) -> tuple[Floats, ...]:
     return proposed(trial, material) if job.target.cuts else ()
 
 
-def _meshed(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Finding, ...]]:
+def _meshed(job: Job, material: Material, base: Path, times: float) -> tuple[Surface, tuple[Finding, ...]]:
     surface, found = load(base / job.target.mesh, cuts=job.target.cuts)
     if job.target.remesh:
-        fine, told = _resampled(surface, job, material)
+        fine, told = _resampled(surface, job, material, times)
         return fine, (*found, *told)
     surface = opened(surface, _cuts(surface, job, material))
     size, flat = job.domains.size, flat_edge(surface, job, material)
@@ -102,24 +106,43 @@ def _meshed(job: Job, material: Material, base: Path) -> tuple[Surface, tuple[Fi
     return fine, (*found, Finding("subdivided", Severity.INFO, text, flat * 1e3, job.domains.size_um, "um"))
 
 
-def _resampled(surface: Surface, job: Job, material: Material) -> tuple[Surface, tuple[Finding, ...]]:
+def _resampled(surface: Surface, job: Job, material: Material, times: float) -> tuple[Surface, tuple[Finding, ...]]:
     """Even triangles of the domains' size, whatever the input's: a trial with about `TRIAL` of them gives the scale."""
     coarse = _coarse(surface, job)
     cuts = _cuts(coarse, job, material)
-    flat = flat_edge(opened(coarse, cuts), job, material)
-    edge = job.domains.size * mean_edge(coarse) / flat
+    edge = times * job.domains.size * mean_edge(coarse) / flat_edge(opened(coarse, cuts), job, material)
     _require_budget(surface, edge)
     even, known = _even(surface, edge, job)
-    made = opened(even, cuts, straight=True)
+    scale = job.domains.size_um / edge
+    found = (*_smoothed(surface, known, scale, job), *_mirrored(surface, even, known, scale))
+    return opened(even, cuts, straight=True), found
+
+
+def _smoothed(surface: Surface, known: float, scale: float, job: Job) -> tuple[Finding, ...]:
+    """That a scan was coarser than the domains; ``scale`` makes its lengths um on the sheet."""
     if not known:
-        return made, ()
-    size = mean_edge(surface) * job.domains.size / edge * 1e3
+        return ()
+    size = mean_edge(surface) * scale
     text = (
         f"the mesh is coarser than the domains (mean edge {size:.0f} um on the sheet), so a smooth surface was laid "
-        f"through its vertices, which is known to about {known * job.domains.size / edge * 1e3:.0f} um (rms) between "
-        'them; give a finer mesh, or target.subdivision = "midpoint" if its facets are meant'
+        f"near its vertices; between them it is known to about {known * scale:.0f} um (rms); give a finer mesh, or "
+        'target.subdivision = "midpoint" if its facets are meant'
     )
-    return made, (Finding("smoothed", Severity.INFO, text, size, job.domains.size_um, "um"),)
+    return (Finding("smoothed", Severity.INFO, text, size, job.domains.size_um, "um"),)
+
+
+def _mirrored(surface: Surface, even: Surface, known: float, scale: float) -> tuple[Finding, ...]:
+    """That half of a target stands for the whole; ``scale`` makes its lengths um on the sheet."""
+    plane = mirror_plane(surface, known) if twins(even) is not None else None
+    if plane is None:
+        return ()
+    off = mismatch(surface, plane) * scale
+    rms, (x, y, z) = np.sqrt(np.mean(off**2)), surface.vertices[np.argmax(off)]
+    text = (
+        f"the target is its own mirror image within {rms:.2g} um rms on the sheet, so one half of it was meshed and "
+        f"mirrored; the halves differ most, by {off.max():.2g} um, at ({x:.4g}, {y:.4g}, {z:.4g}) of the mesh"
+    )
+    return (Finding("symmetric", Severity.INFO, text, float(off.max()), unit="um"),)
 
 
 def _require_budget(surface: Surface, edge: float) -> None:
@@ -148,14 +171,20 @@ def turned(surface: Surface) -> Surface:
     return replace(surface, faces=surface.faces[:, ::-1])
 
 
+def off_size(design: Design, job: Job) -> float:
+    """Mean edge of the triangles on the sheet over the size that was asked for."""
+    return _mean_length(design.uv, design.surface.faces) / job.domains.size
+
+
 def sized(design: Design, job: Job) -> tuple[Finding, ...]:
     """Whether the domains have the size that was asked for."""
-    edge_um = _mean_length(design.uv, design.surface.faces) * 1e3
     asked = job.domains.size_um
+    edge_um = off_size(design, job) * asked
     text = f"{len(design.theta)} domains have a mean edge of {edge_um:.0f} um, asked were {asked:g} um"
     fine = edge_um < 0.5 * asked
     if fine:
-        text += "; the mesh is finer than the domains, let target.remesh be true or ask for smaller domains"
+        way = "ask for larger ones" if job.target.remesh else "let target.remesh be true or ask for smaller ones"
+        text += f"; {way}"
     return (
         Finding("domain_edge", Severity.WARNING if fine else Severity.INFO, text, edge_um, asked, "um"),
         *cut(design),

@@ -169,7 +169,7 @@ def minimise(
 
 def _settled(history: list[float], tolerance: float) -> bool:
     decrease = history[-1 - WINDOW] - history[-1] if len(history) > WINDOW else np.inf
-    return decrease <= WINDOW * tolerance * history[-1] + FLOOR
+    return decrease <= WINDOW * tolerance * abs(history[-1]) + FLOOR  # rounding makes zeros negative
 
 
 def _search(function: Function, start: _Point, direction: Complexes) -> _Point | None:

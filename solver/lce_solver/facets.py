@@ -10,8 +10,9 @@ from lce_solver.subdivision import loop_limit, refine
 from lce_solver.topology import boundary_loops
 from lce_solver.types import Surface
 
-MEANT = 3e-3
-"""Facets are meant, as those of a roof are, if the smooth surface is farther from them than this, rms, in diagonals."""
+MEANT = 0.05
+"""Facets are meant, as those of a roof are, if the smooth surface is farther from them than this part, rms, of the
+surface's thinnest extent."""
 
 
 def rounded(surface: Surface, edge: float) -> tuple[Surface, float]:
@@ -41,5 +42,6 @@ def rounded(surface: Surface, edge: float) -> tuple[Surface, float]:
         smooth = Surface(kept, finer.faces)
     apart = smooth.vertices - closest(smooth.vertices, surface.vertices, surface.faces)
     known = float(np.sqrt(np.mean(np.sum(apart**2, axis=1))))
-    meant = known > MEANT * np.linalg.norm(np.ptp(points, axis=0))
+    relief = np.ptp(points @ np.linalg.svd(points, full_matrices=False)[2].T, axis=0).min()
+    meant = known > MEANT * relief
     return (surface, 0.0) if meant else (smooth, known)

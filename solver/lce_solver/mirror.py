@@ -75,9 +75,14 @@ def mirror_plane(surface: Surface, known: float = 0.0) -> Plane | None:
     plane = candidates[int(np.argmin(misses))]
     for _ in range(FITS):
         plane = _fitted(points, closest(plane.image(points)), plane)
-    image = plane.image(surface.vertices)
-    miss = np.sqrt(np.mean(np.sum((image - closest(image)) ** 2, axis=1)))
+    miss = np.sqrt(np.mean(mismatch(surface, plane) ** 2))
     return plane if miss <= max(np.sqrt(2) * known, MISMATCH * diagonal) else None
+
+
+def mismatch(surface: Surface, plane: Plane) -> Floats:
+    """(n_v,) distances of the vertices' mirror images from the surface."""
+    image = plane.image(surface.vertices)
+    return np.asarray(np.linalg.norm(image - _closest_on(surface)(image), axis=1))
 
 
 def _candidates(surface: Surface) -> list[Plane]:

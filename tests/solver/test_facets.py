@@ -53,12 +53,14 @@ def test_a_plate_keeps_its_corners_its_sides_and_its_plane():
     assert len(found.faces) >= 9 * len(faces)
 
 
-def test_facets_of_a_roof_are_meant_and_a_fine_mesh_stays():
-    roof = Surface(
-        np.array([(0, 0, 0), (1, 0, 0), (0, 1, 1), (1, 1, 1), (0, 2, 0), (1, 2, 0)], dtype=np.float64),
-        [(0, 1, 3), (0, 3, 2), (2, 3, 5), (2, 5, 4)],
-    )
-    assert rounded(roof, 0.01) == (roof, 0.0)
+@pytest.mark.parametrize("height", [1.0, 0.2, 0.05])
+def test_facets_of_a_roof_are_meant(height):
+    points = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 1), (1, 1, 1), (0, 2, 0), (1, 2, 0)], dtype=np.float64)
+    roof = Surface(points * (1, 1, height), [(0, 1, 3), (0, 3, 2), (2, 3, 5), (2, 5, 4)])
+    assert rounded(roof, 0.05) == (roof, 0.0)
+
+
+def test_a_fine_mesh_stays():
     fine = on_unit_sphere(0.1)
     assert rounded(fine, 0.11) == (fine, 0.0)
 
