@@ -95,10 +95,14 @@ def press(name):
 
     from lce_workbench.gui.qt import QtWidgets
 
-    window = FreeCADGui.getMainWindow()
     wanted = {"Ok": ("OK",), "Cancel": ("Cancel", "Abbrechen")}[name]
-    buttons = window.findChildren(QtWidgets.QPushButton)
-    button = alive(b for b in buttons if b.text().replace("&", "") in wanted)
+
+    def shown():
+        buttons = FreeCADGui.getMainWindow().findChildren(QtWidgets.QPushButton)
+        return alive(b for b in buttons if b.text().replace("&", "") in wanted)
+
+    until(lambda: shown() is not None, 10)
+    button = shown()
     enabled = button.isEnabled()
     button.click()
     pump(0.1)

@@ -107,7 +107,8 @@ def text(label: str, pixel: float, font: Font = PLAIN) -> Shape:
     """
     unknown = [letter for letter in label if letter not in font]
     if unknown:
-        msg = f"label {label!a}: the character {unknown[0]!a} cannot be drawn; use capitals, digits, space, + - . /"
+        what = f"marks.label {label!a}: the character {unknown[0]!a}"
+        msg = f"{what} cannot be drawn; use capitals, digits, space, + - . /"
         raise InputError(msg)
     width = 6 * len(label) - 1
     return join(*(_letter(font[letter], 6 * i - width / 2, pixel) for i, letter in enumerate(label)))

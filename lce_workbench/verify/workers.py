@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 from collections.abc import Callable, Mapping
@@ -86,8 +87,8 @@ def _answer(worker: Worker) -> Any:
 
 
 def _serve(pipe: Connection) -> None:
-    """In the worker. A terminal's Ctrl-C goes to all, but is the caller's; whose word ends a FreeCAD that runs here."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """In the worker, which leads a group of its own: a terminal's Ctrl-C is the caller's, who ends the whole group."""
+    os.setpgrp()
     signal.signal(signal.SIGTERM, _quit)
     with suppress(EOFError):
         while True:
@@ -104,7 +105,9 @@ def _end(workers: list[Worker]) -> None:
         worker.process.terminate()
     for worker in workers:
         worker.process.join(GRACE)
-        worker.process.kill()
+        with suppress(ProcessLookupError, PermissionError):  # nobody is left of it
+            os.killpg(worker.process.pid, signal.SIGKILL)
+        worker.process.kill()  # which may not lead its group yet
         worker.process.join()
         worker.pipe.close()
 

@@ -162,7 +162,7 @@ def test_plain_letters_look_like_themselves():
 
 def test_a_label_that_cannot_be_drawn_is_refused():
     for label in ("MÜLLER", "small"):
-        with pytest.raises(InputError, match=r"^label .* cannot be drawn; use capitals"):
+        with pytest.raises(InputError, match=r"^marks.label .* cannot be drawn; use capitals"):
             text(label, PIXEL)
     with pytest.raises(InputError, match=r"'\\xdc'"):
         exposed(FRAME, "top", Job(marks=Marks(label="\xdc")), CODE)
