@@ -57,13 +57,14 @@ def trial(job: Job, base: Path) -> Surface:
 
 def _coarse(surface: Surface, job: Job) -> Surface:
     """About `TRIAL` even triangles."""
-    return _even(surface, float(np.sqrt(4 / np.sqrt(3) * face_areas(surface).sum() / TRIAL)), job)[0]
+    edge = float(np.sqrt(4 / np.sqrt(3) * face_areas(surface).sum() / TRIAL))
+    smooth, known = _smooth(surface, edge, job)
+    return even_mesh(smooth, edge, known)
 
 
-def _even(surface: Surface, edge: float, job: Job) -> tuple[Surface, float]:
-    """Even triangles, and how well a surface is known whose own are larger: 0 if they are not, or are meant."""
-    smooth, known = rounded(surface, edge) if job.target.subdivision == "loop" else (surface, 0.0)
-    return even_mesh(smooth, edge, known), known
+def _smooth(surface: Surface, edge: float, job: Job) -> tuple[Surface, float]:
+    """A surface without facets longer than ``edge``, and how well it is known: 0 if it has none, or they are meant."""
+    return rounded(surface, edge) if job.target.subdivision == "loop" else (surface, 0.0)
 
 
 def _surface(name: str) -> Callable[[float], Surface]:
@@ -112,9 +113,9 @@ def _resampled(surface: Surface, job: Job, material: Material, times: float) -> 
     cuts = _cuts(coarse, job, material)
     edge = times * job.domains.size * mean_edge(coarse) / flat_edge(opened(coarse, cuts), job, material)
     _require_budget(surface, edge)
-    even, known = _even(surface, edge, job)
-    scale = job.domains.size_um / edge
-    found = (*_smoothed(surface, known, scale, job), *_mirrored(surface, even, known, scale))
+    smooth, known = _smooth(surface, edge, job)
+    even, scale = even_mesh(smooth, edge, known), job.domains.size_um / edge
+    found = (*_smoothed(surface, known, scale, job), *_mirrored(smooth, even, known, scale))
     return opened(even, cuts, straight=True), found
 
 

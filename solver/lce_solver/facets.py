@@ -6,7 +6,7 @@ import numpy as np
 
 from lce_solver.geometry import mean_edge
 from lce_solver.remesh import closest, corners
-from lce_solver.subdivision import loop_limit, refine
+from lce_solver.subdivision import MOST_FACES, loop_limit, refine
 from lce_solver.topology import boundary_loops
 from lce_solver.types import Surface
 
@@ -24,10 +24,11 @@ def rounded(surface: Surface, edge: float) -> tuple[Surface, float]:
 
     Returns
     -------
-    The surface, and its rms distance from the facets, within which the scan says nothing. If the mesh is fine enough or
-    its facets are `MEANT`, the surface as it is and zero.
+    The surface, and its rms distance from the facets, within which the scan says nothing. If the mesh is fine enough,
+    its facets are `MEANT`, or are slivers of which `MOST_FACES` would come, the surface as it is and zero.
     """
-    if mean_edge(surface) <= edge:
+    times = mean_edge(surface) / edge
+    if times <= 1 or len(surface.faces) * times**2 > MOST_FACES:
         return surface, 0.0
     rims = boundary_loops(surface.faces)
     fixed = np.concatenate([np.empty(0, np.int64), *(rim[corners(surface.vertices[rim], edge)] for rim in rims)])

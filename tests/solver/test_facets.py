@@ -65,6 +65,17 @@ def test_a_fine_mesh_stays():
     assert rounded(fine, 0.11) == (fine, 0.0)
 
 
+def test_a_mesh_of_slivers_is_not_blown_up():
+    """A strip of 20 000 long thin triangles: little area, so few domains, but edges that are far too long."""
+    x = np.linspace(0, 1, 10_001)
+    points = np.concatenate([np.column_stack([x, np.full_like(x, y), np.sin(3 * x)]) for y in (0.0, 1.0)])
+    i = np.arange(10_000)
+    strip = Surface(
+        points, np.concatenate([np.stack([i, i + 1, i + 10_001], 1), np.stack([i + 1, i + 10_002, i + 10_001], 1)])
+    )
+    assert rounded(strip, 0.02) == (strip, 0.0)
+
+
 def test_where_it_lies_does_not_matter():
     coarse = on_unit_sphere(0.2)
     here, _ = rounded(coarse, 0.1)
