@@ -10,13 +10,17 @@ CHANGES = {
 }
 
 
+HIDDEN = {"depth, hidden": {"channels.depth_um": 0.65}, "gap, hidden": {"sheet.gap_um": 140.0}}
+"""With the bodies hidden: what is left is computing, without FreeCAD's meshing and drawing."""
+
+
 def changed(folder):
-    """Parameter -> seconds of the clock, of this thread and of all threads, and what was recomputed."""
+    """Change -> seconds of the clock, of this thread and of all threads, and what was recomputed."""
     from gui_hands import activate, pump, run
     from session_steps import watch
     from view_steps import opened
 
-    from lce_workbench.app import session
+    from lce_workbench.app import session, works
 
     activate()
     cell = opened(folder)
@@ -24,7 +28,9 @@ def changed(folder):
     run("Domains")
     pump(1.0)
     recomputed = watch(cell.Document)
-    for name, settings in CHANGES.items():
+    for name, settings in {**CHANGES, **HIDDEN}.items():
+        for body in works.bodies(cell):
+            body.ViewObject.Visibility = name in CHANGES
         clock, own, whole = time.monotonic(), time.thread_time(), time.process_time()
         session.set_parameters(cell, settings)
         spent = time.monotonic() - clock, time.thread_time() - own, time.process_time() - whole

@@ -31,6 +31,12 @@ def work(mesh, folder):
     began = time.process_time()
     session.set_parameters(cell, {"channels.depth_um": 0.7})
     found["depth"] = {"recomputed": recomputed(), "seconds": time.process_time() - began}
+    land, glass = doc.BottomLand.Shape, doc.BottomGlass.Shape
+    session.set_parameters(cell, {"plates.glass_mm": 0.9})
+    found["kept"] = [doc.BottomLand.Shape.isPartner(land), doc.BottomGlass.Shape.isPartner(glass)]
+    doc.BottomLand.Shape = glass
+    doc.recompute()
+    found["restored"] = doc.BottomLand.Shape.isPartner(land)
     session.channel_window(cell, (3, 7))
     found["window"] = len(doc.ChannelsTop.Shape.Solids)
     session.mask(cell, folder)

@@ -161,7 +161,7 @@ class Body(Proxy):
         """
         import Part
 
-        from lce_workbench.cad.part import solid
+        from lce_workbench.cad.part import same, solid
 
         prisms = prisms_of(obj)
         obj.Volume = sum(prism.volume for prism in prisms)  # each solid is checked against its prism's
@@ -170,7 +170,8 @@ class Body(Proxy):
             return
         stacks = [prisms] if prisms[0].name == obj.Prisms else [[prism] for prism in prisms]  # a part; channels
         shapes = [solid(stack) for stack in stacks]
-        obj.Shape = shapes[0] if len(shapes) == 1 else Part.makeCompound(shapes)
+        if not same(obj.Shape, shapes):
+            obj.Shape = shapes[0] if len(shapes) == 1 else Part.makeCompound(shapes)
         obj.Colour = prisms[0].colour
         obj.Transparency = _transparency(prisms[0])
 

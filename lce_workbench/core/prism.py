@@ -9,7 +9,6 @@ from functools import cached_property
 import numpy as np
 
 from lce_solver.types import Floats
-from lce_workbench.core.domains import signed_area
 
 Colour = tuple[float, float, float]
 
@@ -100,7 +99,7 @@ def bodies(prisms: Sequence[Prism]) -> dict[str, list[Prism]]:
 
 def _turned(ring: Floats, sign: int) -> Floats:
     """The ring, counter-clockwise for ``sign`` +1, clockwise for -1; read-only."""
-    turned = np.array(ring if signed_area(ring[None])[0] * sign > 0 else ring[::-1])
+    turned = np.array(ring if _moments(ring)[0] * sign > 0 else ring[::-1])
     turned.setflags(write=False)
     return turned
 

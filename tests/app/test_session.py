@@ -64,6 +64,12 @@ def test_a_wrong_setting_is_one_sentence_and_changes_nothing(done):
     assert unchanged
 
 
+def test_other_glass_leaves_the_lands_as_they_are_drawn(done):
+    """Their shapes stay the same ones; a shape from elsewhere is replaced."""
+    assert done["kept"] == [True, False]
+    assert done["restored"]
+
+
 def test_the_gap_moves_twist_and_masks_but_not_the_metric(done):
     after = done["gap"]
     assert after["statuses"]["Design"].startswith("current, but not corrected for this film yet")
