@@ -13,7 +13,7 @@ def shown(mesh, pictures):
     import Mesh
 
     window = FreeCADGui.getMainWindow()
-    window.setGeometry(0, 0, 1400, 900)
+    window.showMaximized()
     activate()
     from lce_workbench.gui.qt import QtWidgets
 

@@ -219,6 +219,8 @@ def _page(doc: Any, sheet: Sheet, subject: Subject) -> Any:
     template = doc.addObject("TechDraw::DrawSVGTemplate", f"Template_{sheet.name[2:]}")
     template.Template = str(ROOT / "templates" / f"{sheet.paper}_landscape.svg")
     page.Template = template
+    if page.ViewObject is not None:
+        page.ViewObject.ShowFrames = False  # else frames and names of the views lie over the drawing's own words
     _fill(template, sheet, subject)
     doc.getObject(GROUP).addObject(page)
     return page

@@ -23,7 +23,19 @@ from lce_solver.compare import align, residual_strain, vertex_areas
 from lce_solver.onset import Onset, onset
 from lce_solver.shell import Film, film_of, predict, settle
 from lce_solver.shell_energy import energy, hessian, pattern_forces
-from lce_solver.types import Design, Finding, Floats, Ints, Prediction, Progress, Severity, Status, line_angle, silent
+from lce_solver.types import (
+    Design,
+    Finding,
+    Floats,
+    Ints,
+    Prediction,
+    Progress,
+    Severity,
+    Stage,
+    Status,
+    line_angle,
+    silent,
+)
 
 PARTS = {"dtheta": (1,), "full": (0, 1)}
 """What may change: columns of the pattern, 0 the director and 1 the twist."""
@@ -39,6 +51,8 @@ LOST = 1.0
 """Further away than this the sheet has not taken the target's shape [% of the diagonal]."""
 ROUNDS, STEPS, CUTS = 3, 5, 4
 """Most heatings after which the sheet is corrected; steps of one correction; lengths tried of one step."""
+HEATING = 0.2
+"""Share of the heating in a round's time."""
 SAME = 1.05
 """A sheet heated from flat that ends within this factor of the corrected equilibrium has found it."""
 SAVED = 0.5
@@ -209,21 +223,22 @@ class Correction:
         off, cost = np.repeat(self.weights, 3) * at.off.ravel(), self.price @ at.change.T.ravel()
         return matrix, -np.concatenate([off, cost, scale * energy(sheet, aim, at.x)[1].ravel()])
 
-    def descend(self, at: State) -> State:
+    def descend(self, at: State, progress: Progress) -> State:
         """Gauss-Newton steps, each followed by the sheet's own relaxation, while they help."""
-        for _ in range(STEPS):
-            before, at = at, self.along(at, *self.step(at))
+        for step in range(STEPS):
+            before, at = at, self.along(at, *self.step(at), _within(progress, step / STEPS, step / STEPS))
             if at.misfit > GAIN * before.misfit:
                 return at
         return at
 
-    def along(self, at: State, moved: Floats, changed: Floats) -> State:
+    def along(self, at: State, moved: Floats, changed: Floats, progress: Progress = silent) -> State:
         """The best of shorter and shorter steps, down to the first that saves about what it should."""
         hoped = at.misfit - self.misfit(at.off + moved, at.change + changed)
         best, share = at, SAVED if np.isfinite(self.least) else 0.0
         for cut in 3.0 ** -np.arange(CUTS):
             change = at.change + cut * changed
-            there = self.state(settle(self.pattern(change), at.x + cut * moved).vertices, change)
+            found = settle(self.pattern(change), at.x + cut * moved, progress=progress)
+            there = self.state(found.vertices, change)
             worse, best = there.misfit > best.misfit, min(best, there, key=lambda state: state.misfit)
             if at.misfit - best.misfit > share * cut * hoped or (worse and best is not at):
                 return best
@@ -246,15 +261,16 @@ def arrive(plan: Design, part: str, limit: float, progress: Progress = silent) -
     tries: list[Try] = []
     expected = 0.0
     for round_ in range(ROUNDS + 1):
-        progress("equilibrium", round_ / (ROUNDS + 1))
-        tries.append(heated(plan, work.pattern(change)))
+        begin, corrected = round_ / (ROUNDS + 1), (round_ + HEATING) / (ROUNDS + 1)
+        tries.append(heated(plan, work.pattern(change), _within(progress, begin, corrected)))
         last = tries[-1]
         if round_ == ROUNDS or (last.firm and last.rms < max(ENOUGH, SAME * expected)):
             break
         wanted = BIAS * 2 ** sum(t.mirrored for t in tries[1:])
         work = work.sided(last.onset, change, wanted, hold=any(t.rms < LOST and not t.firm for t in tries[1:]))
         start = plan.surface.vertices if last.rms > LOST else last.heated.vertices
-        at = work.descend(work.state(settle(work.pattern(change), start).vertices, change))
+        there = settle(work.pattern(change), start).vertices
+        at = work.descend(work.state(there, change), _within(progress, corrected, (round_ + 1) / (ROUNDS + 1)))
         change, expected = at.change, float(np.sqrt(np.average((at.off**2).sum(axis=1), weights=work.weights)))
         expected *= 100 / _diagonal(plan)
     best = min(tries, key=lambda one: one.rms + LOST * (not one.firm))
@@ -263,9 +279,19 @@ def arrive(plan: Design, part: str, limit: float, progress: Progress = silent) -
     return made, _told(plan, made, tries[0], best, limit)
 
 
-def heated(plan: Design, film: Film) -> Try:
+def _within(progress: Progress, begin: float, end: float) -> Progress:
+    """The progress of a part of the work, from 0 to 1: its minimisations, with their energy."""
+
+    def tell(stage: str, fraction: float) -> None:
+        if isinstance(stage, Stage):
+            progress(Stage("equilibrium", stage.energy), begin + (end - begin) * fraction)
+
+    return tell
+
+
+def heated(plan: Design, film: Film, progress: Progress = silent) -> Try:
     """Heat the film from flat and measure how far from the target it ends."""
-    found = predict(film, seed=SEED)
+    found = predict(film, seed=SEED, progress=progress)
     target = plan.surface.vertices
     areas = vertex_areas(target, plan.surface.faces)
     direct, mirror = (align(found.vertices, target, areas, reflect=reflect).rms for reflect in (False, True))

@@ -62,8 +62,24 @@ def dome():
 
 
 @pytest.fixture(scope="module")
-def arrived(dome):
-    return arrive(dome, "full", LIMIT)
+def told():
+    """What the correction tells of its progress: stages and shares."""
+    return []
+
+
+@pytest.fixture(scope="module")
+def arrived(dome, told):
+    return arrive(dome, "full", LIMIT, lambda stage, share: told.append((stage, share)))
+
+
+def test_progress_rises_within_each_round_and_tells_the_energy(arrived, told):
+    """The correction is most of a design's time: nobody should wait at a bar that stands still."""
+    shares = np.array([share for _, share in told])
+    assert {str(stage) for stage, _ in told} == {"equilibrium"}
+    assert np.all(np.diff(shares) >= 0)
+    assert len(np.unique(shares[shares < 0.25])) > 10  # the first of four rounds
+    assert shares[-1] == 1.0
+    assert all(stage.energy > 0 for stage, _ in told[:-1])
 
 
 def test_the_predicted_move_is_that_of_the_equilibrium(dome):
