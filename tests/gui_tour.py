@@ -100,7 +100,7 @@ def whole(mesh, folder, settings, pictures=""):
 
     FreeCADGui.getMainWindow().setGeometry(0, 0, 1400, 900)
     activate()
-    doc, seconds = FreeCAD.newDocument("Whole"), {}
+    doc, seconds, free = FreeCAD.newDocument("Whole"), {}, {}
     Mesh.insert(mesh, doc.Name)
     FreeCADGui.Selection.addSelection(doc.Objects[0])
     for number, (name, fill) in enumerate(
@@ -123,7 +123,7 @@ def whole(mesh, folder, settings, pictures=""):
             for field, text in (fill | settings.get(name, {})).items():
                 write(field, text)
             assert press("Ok"), widget("reason").text()
-            until(lambda: not is_open(), 3000)
+            free[name] = [round(gap, 3) for gap in until(lambda: not is_open(), 3000)]
         seconds[name] = round(time.monotonic() - began, 1)
         FreeCADGui.Selection.clearSelection()
         picture(pictures, f"{number}_{name}")
@@ -131,7 +131,7 @@ def whole(mesh, folder, settings, pictures=""):
     statuses = {o.Label: o.Status for o in doc.Objects if "MadeFor" in o.PropertiesList}
     figures = [doc.Design.Domains, doc.Mask.ChannelsBottom, doc.Prediction.Verdict, doc.Prediction.Rms]
     found = {"statuses": statuses, "folder": doc.Review.Folder, "rows": rows, "errors": doc.Review.Errors}
-    return found | {"seconds": seconds, "figures": figures}
+    return found | {"seconds": seconds, "free": free, "figures": figures}
 
 
 def viewed(folder, pictures):
