@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import reduce
 
 import numpy as np
 
@@ -32,7 +33,8 @@ def centroids(polygons: Floats) -> Floats:
 
 def boxes(polygons: Floats) -> Floats:
     """(n, 4) low x, low y, high x, high y."""
-    return np.concatenate([polygons.min(axis=1), polygons.max(axis=1)], axis=1)
+    corners = np.moveaxis(polygons, 1, 0)  # few: one after the other they take a tenth of the time
+    return np.concatenate([reduce(np.minimum, corners), reduce(np.maximum, corners)], axis=1)
 
 
 def extent(groups: Iterable[Floats]) -> Floats:
