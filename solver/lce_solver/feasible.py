@@ -11,12 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import igl
 import numpy as np
 
-from lce_solver.errors import SolverError
+from lce_solver.errors import InputError, SolverError
 from lce_solver.geometry import evened
 from lce_solver.topology import boundary_loops
 from lce_solver.twist import bending_tensor
@@ -119,13 +119,18 @@ def _factored(vertices: Floats, faces: Ints) -> tuple[igl.HeatGeodesicsData, flo
 
 
 def feasible_lambda(bound: LengthBound, material: Material) -> float | None:
-    """The lambda, on the same side of 1 and with the same nu, whose bound the target just meets; None if none does."""
+    """The lambda, on the same side of 1 and with the same nu, whose bound the target just meets; None if none does.
+
+    Or if only one does that no material has.
+    """
     reach = bound.length / np.pi * np.sqrt(abs(bound.curvature))
     squared = 1 / (1 - reach**2) if bound.curvature > 0 else 1 + reach**2
     if not 1 < squared < np.inf:
         return None
     power = np.sign(np.log(material.along)) / (2 + 2 * material.nu)
-    return float(squared**power)
+    with suppress(InputError, OverflowError):
+        return replace(material, lambda_=float(squared) ** float(power)).lambda_
+    return None
 
 
 def bounded(surface: Surface, material: Material) -> Finding:

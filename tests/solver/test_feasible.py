@@ -46,6 +46,16 @@ def test_for_more_than_half_a_sphere_no_lambda_does():
     assert feasible_lambda(bound, MATTER) is None
 
 
+@pytest.mark.parametrize("nu", [-0.999, -0.999999])
+def test_no_lambda_is_named_that_no_material_has(nu):
+    """Near nu = -1 all lengths change alike, and only absurd lambdas reach the contrast of the others."""
+    target = SURFACES["face"](0.1)
+    bound = length_bound(target, Material(0.6, nu))
+    assert bound.ratio > 1
+    assert feasible_lambda(bound, Material(0.6, nu)) is None
+    assert "no lambda would do" in bounded(target, Material(0.6, nu)).message
+
+
 @pytest.mark.parametrize("lambda_", [0.6, 1 / 0.6])
 @pytest.mark.parametrize("name", ["dome", "saddle"])
 def test_the_feasible_lambda_is_on_the_same_side_of_1(name, lambda_):
