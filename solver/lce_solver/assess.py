@@ -21,7 +21,7 @@ QUARTER = np.pi / 2
 REMEDY = {
     Status.ITERATION_LIMIT: "raise solver.max_iterations or solver.tolerance",
     Status.FLIPPED: "refine the target, smooth it where it folds, or choose lambda further from 1",
-    Status.OVERLAP: "the target would cover itself when laid flat: split it into smaller pieces",
+    Status.OVERLAP: "laid flat the target would cover itself: split it, or cut it open (target.cuts)",
 }
 """What the user can do about a status that is not success."""
 
@@ -55,7 +55,7 @@ def stretched(design: Design) -> tuple[Finding, Finding]:
     place = _where(design, triangle)
     if rms > RMS_LIMIT:
         severity = Severity.ERROR if rms > RMS_LOST else Severity.WARNING
-        advice = "; refine the target, or choose lambda further from 1"
+        advice = "; refine the target, choose lambda further from 1, or cut the target open (target.cuts)"
     else:
         severity, advice = Severity.INFO, ""
     message = f"the stretches miss the material's by {rms:.2%} rms{advice}"
