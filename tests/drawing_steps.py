@@ -18,20 +18,56 @@ def draw(folder, job, changes):
     doc = FreeCAD.newDocument("Test")
     values = jobfile.parse(job)
     take_design(new_cell(doc, values), Path(folder) / "design.npz", values)
-    pages = drawings.add_pages(doc)
+    pages = drawings.add_pages(doc.Cell)
     found = {"first": read(doc), "objects": len(doc.Objects)}
     found["order"] = [[view.TypeId for view in page.Views] for page in pages]
     out = Path(folder) / "drawings"
     out.mkdir()
     drawings.export(pages, out)
+    moved = doc.Dim_spacer_strip_place_strip_from_edge
+    moved.X = 7.0
+    doc.SheetParameters.TwistGain = 1.5  # which no drawing shows
+    drawings.recompute(pages)
+    found["moved"] = moved.X.Value
     for name, prop, value in changes:
         setattr(doc.getObject(name), prop, value)
     drawings.recompute(pages)
-    found["changed"] = read(doc)
+    found["changed"], found["scales"] = read(doc), scales(doc)
     doc.OutputParameters.Author = "B. Other"
-    pages = drawings.add_pages(doc)  # brings the former set up to date
+    pages = drawings.add_pages(doc.Cell)  # brings the former set up to date
     found["again"], found["objects again"] = read(doc), len(doc.Objects)
     found["authors"] = [page.Template.EditableTexts["author"] for page in pages]
+    found["balloons"] = [obj.Text for obj in doc.Objects if obj.isDerivedFrom("TechDraw::DrawViewBalloon")]
+    out = Path(folder) / "changed"
+    out.mkdir()
+    drawings.export(pages, out)
+    return found
+
+
+def scales(doc):
+    """View -> scale."""
+    return {obj.Name: obj.Scale for obj in doc.Objects if obj.isDerivedFrom("TechDraw::DrawViewPart")}
+
+
+def two_cells(folder, job, gap):
+    """Draw two cells of one document, which differ in their gap; returns what their drawings measure."""
+    from pathlib import Path
+
+    import FreeCAD
+
+    from lce_workbench.app import drawings
+    from lce_workbench.app.document import new_cell, take_design
+    from lce_workbench.core import jobfile
+
+    drawings.hidden_window()
+    doc, found, values = FreeCAD.newDocument("Two"), [], jobfile.parse(job)
+    for _ in range(2):
+        take_design(new_cell(doc, values), Path(folder) / "design.npz", values)
+    doc.SheetParameters001.Gap = gap
+    for cell in (doc.Cell, doc.Cell001, doc.Cell):
+        pages = drawings.add_pages(cell)
+        shown = [view for view in pages[0].Views if view.Name.endswith("_gap")]
+        found.append([shown[0].getRawValue(), len(pages), len(doc.Objects)])
     return found
 
 

@@ -223,6 +223,6 @@ def boxes(marks: Floats) -> list[Stroke]:
 def numbers(marks: Floats) -> tuple[Label, ...]:
     """M1 to M8 below their boxes, but M7 above its own: there the sheet is below."""
     return tuple(
-        Label(f"M{k + 1}", (x, y + (HALF if k == UPPER else -HALF)), (0.0, 1.0 if k == UPPER else -3.4), size=2.8)
+        Label(f"M{k + 1}", (x, y + (HALF if k == UPPER else -HALF)), (0.0, 1.0 if k == UPPER else -2.7), size=2.8)
         for k, (x, y) in enumerate(marks.tolist())
     )

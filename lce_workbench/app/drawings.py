@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import count
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -19,9 +19,10 @@ import numpy as np
 from lce_solver.errors import EnvironmentFault, InputError
 from lce_workbench import ROOT, packages
 from lce_workbench.app import cells
+from lce_workbench.app.annotations import NEAR, annotate, assign, hold, lay, layout, set_scale, vertices_of
 from lce_workbench.app.cell_views import Subject
 from lce_workbench.app.drawing_files import write_dxf, write_pdf, write_svg
-from lce_workbench.app.figures import TEXT, Figure, Placed, Sheet
+from lce_workbench.app.figures import Figure, Placed, Sheet
 from lce_workbench.app.objects import HIDDEN, Proxy, add, job_of
 from lce_workbench.app.sheets import sheets, subject_of, title_block
 from lce_workbench.app.symbols import PAPER, symbol
@@ -31,9 +32,6 @@ from lce_workbench.outputs import told
 
 PATIENCE = 120.0
 """TechDraw of FreeCAD 1.0 projects views in threads of its own; so long we wait for them [s]."""
-
-NEAR = 1e-6
-"""A vertex of a view is a dimension's point when it is so near, relative to the view's size."""
 
 
 class Drawn(Proxy):
@@ -53,12 +51,19 @@ class DrawnFigure(Drawn):
         super().setup(obj)
         add(obj, "App::PropertyString", "Figure", "Name of the view", mode=HIDDEN)
         add(obj, "App::PropertyStringList", "Texts", "What the dimensions read, in their order", mode=HIDDEN)
+        add(obj, "App::PropertyString", "Layout", "Scale and places of its view and dimensions", mode=HIDDEN)
 
     def execute(self, obj: Any) -> None:
-        """Draw the edges anew."""
-        figure = next(view.figure for view in sheet_of(obj).views if view.figure.name == obj.Figure)
-        obj.Shape = _edges(figure)
-        obj.Texts = [dim.text for dim in figure.dims]
+        """Draw the edges anew; views and dimensions, which are computed after it, get the places that fit them."""
+        placed = next(view for view in sheet_of(obj).views if view.figure.name == obj.Figure)
+        obj.Shape = _edges(placed.figure)
+        obj.Texts = [dim.text for dim in placed.figure.dims]
+        former, obj.Layout = obj.Layout, layout(placed)
+        for view in obj.InList:
+            if view.isDerivedFrom("TechDraw::DrawViewPart"):
+                hold(view, placed.figure, placed.figure.vertices(NEAR) - placed.figure.middle)
+                if former != obj.Layout:  # else what was moved by hand stays there
+                    lay(view, placed)
 
 
 class DrawnSymbol(Drawn):
@@ -73,10 +78,10 @@ class DrawnSymbol(Drawn):
         obj.Svg = symbol(sheet_of(obj))
 
 
-def figure_of(view: Any) -> Figure:
-    """What a view shows, for the parameters as they are."""
+def placed_of(view: Any) -> Placed:
+    """What a view shows, where and at which scale, for the parameters as they are."""
     source = view.Source[0]
-    return next(placed.figure for placed in sheet_of(source).views if placed.figure.name == source.Figure)
+    return next(placed for placed in sheet_of(source).views if placed.figure.name == source.Figure)
 
 
 def sheet_of(obj: Any) -> Sheet:
@@ -112,15 +117,14 @@ def run_drawings(folder: Path) -> None:
     from lce_workbench.app.document import new_cell, take_design
 
     hidden_window()
-    # Faces of views are not used, and finding them takes long. These settings are this process's own.
-    FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Mod/TechDraw/General").SetBool("HandleFaces", False)
     out = folder / "drawings"
     doc = FreeCAD.newDocument("Drawings")
     with told(out):
         out.mkdir(exist_ok=True)
         job = jobfile.load(folder / "job.toml")
-        take_design(new_cell(doc, job), folder / "design.npz", job)
-        export(add_pages(doc), out)
+        cell = new_cell(doc, job)
+        take_design(cell, folder / "design.npz", job)
+        export(add_pages(cell), out)
 
 
 def hidden_window() -> None:
@@ -142,52 +146,65 @@ def hidden_window() -> None:
     FreeCADGui.getMainWindow().hide()
 
 
-def add_pages(doc: Any) -> list[Any]:
-    """Add the set of drawings of the document's cell, one page a sheet, or bring the one that it has up to date.
+def add_pages(cell: Any) -> list[Any]:
+    """Add the set of drawings of a cell to its document, one page a sheet, or bring the one that it has up to date.
 
     Returns the pages, in order.
 
     Raises
     ------
     InputError
-        The document holds no design.
+        The cell holds no design.
     EnvironmentFault
         TechDraw does not project the views.
     """
-    cell = cells.the_cell(doc)
-    design, parameters = cells.design_of(cell), list(cells.sections(cell).values())
+    doc, design, parameters = cell.Document, cells.design_of(cell), list(cells.sections(cell).values())
     if not design.File:
         msg = "the cell has no design to draw; solve it first"
         raise InputError(msg)
     subject = subject_of(*_now(design))
-    former = doc.getObject(GROUP)
-    if former is not None:
-        return _updated([obj for obj in former.Group if obj.isDerivedFrom("TechDraw::DrawPage")], subject)
+    if former := _pages_of(design):
+        return _updated(former, subject)
     group = doc.addObject("App::DocumentObjectGroup", GROUP)
-    made: list[tuple[Any, Placed, Any]] = []
     pages = []
     for sheet in sheets(*_now(design)):
-        page = _page(doc, sheet, subject)
+        page = _page(group, sheet, subject)
         common = {"Sheet": sheet.name, "Design": design, "Parameters": parameters}
         for view in sheet.views:
             source = _drawn(doc, "Part::FeaturePython", DrawnFigure, f"{sheet.name[2:]}_{view.figure.name}", group)
-            _set(source, Figure=view.figure.name, **common)
-            made.append((_view(doc, page, view, source), view, page))
+            assign(source, Figure=view.figure.name, **common)
+            _view(doc, page, view, source)
         _symbol(doc, page, sheet, common, group)  # after the views, whose faces would lie on it in the window
         pages.append(page)
-    recompute(pages)
-    for view, placed, page in made:
-        _annotate(doc, page, view, placed)
-    recompute(pages)
-    return pages
+    return annotated(pages)
+
+
+def _pages_of(design: Any) -> list[Any]:
+    """The pages of the set that shows a design, in order; none when there is no set."""
+    sources = sorted((obj for obj in design.InList if cells.kind_of(obj) == "DrawnSymbol"), key=lambda obj: obj.Sheet)
+    shown = [view for source in sources for view in source.InList if view.isDerivedFrom("TechDraw::DrawViewSymbol")]
+    return [page for view in shown for page in view.InList if page.isDerivedFrom("TechDraw::DrawPage")]
 
 
 def _updated(pages: list[Any], subject: Subject) -> list[Any]:
     """Pages of a former set, with all that follows the parameters and with the title blocks of today."""
-    recompute(pages)
     for page in pages:
         _fill(page.Template, sheet_of(_beside(page)[1]), subject)
+    return annotated(pages)
+
+
+def annotated(pages: list[Any]) -> list[Any]:
+    """The pages with the dimensions and balloons of their views."""
+    recompute(pages)
+    for page in pages:
+        for view in _views(page):
+            annotate(page, view, placed_of(view))
+    recompute(pages)
     return pages
+
+
+def _views(page: Any) -> list[Any]:
+    return [view for view in page.Views if view.isDerivedFrom("TechDraw::DrawViewPart")]
 
 
 def _fill(template: Any, sheet: Sheet, subject: Subject) -> None:
@@ -208,12 +225,8 @@ def _drawn(doc: Any, kind: str, proxy: type, name: str, group: Any) -> Any:
     return obj
 
 
-def _set(obj: Any, **values: Any) -> None:
-    for name, value in values.items():
-        setattr(obj, name, value)
-
-
-def _page(doc: Any, sheet: Sheet, subject: Subject) -> Any:
+def _page(group: Any, sheet: Sheet, subject: Subject) -> Any:
+    doc = group.Document
     page = doc.addObject("TechDraw::DrawPage", f"Page_{sheet.name[2:]}")
     page.Label = f"{sheet.name[0]} {sheet.title}"
     template = doc.addObject("TechDraw::DrawSVGTemplate", f"Template_{sheet.name[2:]}")
@@ -222,30 +235,29 @@ def _page(doc: Any, sheet: Sheet, subject: Subject) -> Any:
     if page.ViewObject is not None:
         page.ViewObject.ShowFrames = False  # else frames and names of the views lie over the drawing's own words
     _fill(template, sheet, subject)
-    doc.getObject(GROUP).addObject(page)
+    group.addObject(page)
     return page
 
 
 def _symbol(doc: Any, page: Any, sheet: Sheet, common: dict[str, Any], group: Any) -> None:
     source = _drawn(doc, "App::FeaturePython", DrawnSymbol, f"{sheet.name[2:]}_beside", group)
-    _set(source, **common)
+    assign(source, **common)
     shown = doc.addObject("TechDraw::DrawViewSymbol", f"Beside_{sheet.name[2:]}")
     page.addView(shown)
     shown.setExpression("Symbol", f"{source.Name}.Svg")
     width, height = PAPER[sheet.paper]
-    _set(shown, X=width / 2, Y=height / 2, ScaleType="Custom", Scale=1.0)
+    assign(shown, X=width / 2, Y=height / 2, ScaleType="Custom", Scale=1.0)
 
 
-def _view(doc: Any, page: Any, placed: Placed, source: Any) -> Any:
+def _view(doc: Any, page: Any, placed: Placed, source: Any) -> None:
     view = doc.addObject("TechDraw::DrawViewPart", f"View_{source.Name[6:]}")
     page.addView(view)
-    _set(view, Source=[source], Direction=FreeCAD.Vector(0, 0, 1), XDirection=FreeCAD.Vector(1, 0, 0))
-    _set(view, ScaleType="Custom", Scale=placed.scale)
-    _set(view, X=placed.at[0], Y=placed.at[1])  # after the scale: adding and scaling move it
+    assign(view, Source=[source], Direction=FreeCAD.Vector(0, 0, 1), XDirection=FreeCAD.Vector(1, 0, 0))
+    view.ScaleType = "Custom"
+    set_scale(view, placed)
     view.Label = placed.figure.caption
     if view.ViewObject is not None:
         view.ViewObject.LineWidth = 0.35
-    return view
 
 
 def recompute(pages: Iterable[Any]) -> None:
@@ -258,15 +270,33 @@ def recompute(pages: Iterable[Any]) -> None:
     EnvironmentFault
         It does not come to an end.
     """
+    views = [view for page in pages for view in page.Views]
+    with _without_faces():
+        _redraw(views)
+
+
+@contextmanager
+def _without_faces() -> Iterator[None]:
+    """Views have edges only: faces would hide what stands beside them in the files, and finding them takes long."""
+    general = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Mod/TechDraw/General")
+    former = general.GetBool("HandleFaces", True)
+    general.SetBool("HandleFaces", False)
+    try:
+        yield
+    finally:
+        general.SetBool("HandleFaces", former)
+
+
+def _redraw(views: Sequence[Any]) -> None:
     import FreeCADGui
 
-    views = [view for page in pages for view in page.Views]
     for obj in (*(source for view in views for source in view.OutList if hasattr(source, "Sheet")), *views):
         obj.recompute()  # not the document: its solids take long
         if not obj.isValid():
             raise InputError(obj.getStatusString())
     end = time.monotonic() + PATIENCE
-    while waiting := [v for v in views if v.isDerivedFrom("TechDraw::DrawViewPart") and not _shows(v, figure_of(v))]:
+    parts = [(view, placed_of(view).figure) for view in views if view.isDerivedFrom("TechDraw::DrawViewPart")]
+    while waiting := [view for view, figure in parts if not _shows(view, figure)]:
         FreeCADGui.updateGui()
         time.sleep(0.01)
         if time.monotonic() > end:
@@ -280,71 +310,12 @@ def recompute(pages: Iterable[Any]) -> None:
 
 def _shows(view: Any, figure: Figure) -> bool:
     """Whether a view shows its figure as it is now: its extent, and a vertex wherever something is dimensioned."""
-    points, near = np.array([(point.x, point.y) for point in _vertices(view)]), NEAR * max(figure.size)
+    points, near = vertices_of(view), NEAR * max(figure.size)
     if not view.getVisibleEdges() or np.abs(np.ptp(points, axis=0) - figure.size).max() > near:
         return False
     ends = np.array([end for dim in figure.dims for end in (dim.a, dim.b)]).reshape(-1, 2) - figure.middle
     away = np.linalg.norm(ends[:, None] - points, axis=2).min(axis=1)
     return bool(np.all(away <= near))
-
-
-def _annotate(doc: Any, page: Any, view: Any, placed: Placed) -> None:
-    """Add the dimensions and balloons of a view."""
-    vertices = list(_vertices(view))
-    for k, dim in enumerate(placed.figure.dims):
-        shown = doc.addObject("TechDraw::DrawViewDimension", f"Dim_{view.Name[5:]}_{dim.name}")
-        shown.Type = {"x": "DistanceX", "y": "DistanceY"}[dim.axis]
-        shown.References2D = [(view, _nearest(vertices, placed.figure, at)) for at in (dim.a, dim.b)]
-        if dim.unit == "um":  # TechDraw's own format knows millimetres only
-            shown.Arbitrary = True
-            shown.setExpression("FormatSpec", f"{view.Source[0].Name}.Texts[{k}]")
-        else:
-            shown.FormatSpec = "%.4w"
-        page.addView(shown)
-        shown.X, shown.Y = placed.text_at(dim).tolist()
-        _style(shown)
-    for balloon in placed.figure.balloons:
-        shown = doc.addObject("TechDraw::DrawViewBalloon", f"Balloon_{view.Name[5:]}_{balloon.text}")
-        tip = (balloon.tip - placed.figure.middle).tolist()
-        _set(shown, SourceView=view, OriginX=tip[0], OriginY=tip[1], Text=balloon.text)
-        page.addView(shown)
-        _set(shown, X=balloon.at[0] / placed.scale, Y=balloon.at[1] / placed.scale, EndType="Dot", ShapeScale=1.0)
-        _style(shown)
-
-
-def _vertices(view: Any) -> Iterator[Any]:
-    """Vertices of a view, in its own plane from its middle."""
-    for index in count():
-        try:
-            yield view.getVertexByIndex(index).Point
-        except ValueError:
-            return
-
-
-def _nearest(vertices: Sequence[Any], figure: Figure, at: tuple[float, float]) -> str:
-    """Name of the view's vertex at a point of the figure."""
-    x, y = (at - figure.middle).tolist()
-    far = [(v.x - x) ** 2 + (v.y - y) ** 2 for v in vertices]
-    best = min(range(len(far)), key=far.__getitem__)
-    if far[best] ** 0.5 > NEAR * max(figure.size):
-        msg = f"the view {figure.name} has no vertex at {at}; report it"
-        raise RuntimeError(msg)
-    return f"Vertex{best}"
-
-
-def _style(shown: Any) -> None:
-    """Pens and text, whose size is the whole line's in FreeCAD 0.20, and that of its capitals in 1.0."""
-    look = shown.ViewObject
-    if look is not None:
-        look.LineWidth = 0.18
-        look.Fontsize = CAPITALS * TEXT if NEW else TEXT
-
-
-CAPITALS = 0.7
-"""Height of osifont's capitals, of its line."""
-
-NEW = int(FreeCAD.Version()[0]) >= 1
-"""Whether this is FreeCAD 1."""
 
 
 def export(pages: Sequence[Any], folder: Path) -> None:
@@ -358,6 +329,7 @@ def export(pages: Sequence[Any], folder: Path) -> None:
         A package that writes them is missing.
     """
     packages.append()
+    recompute(pages)
     fonts = Path(FreeCAD.getResourceDir()) / "Mod" / "TechDraw" / "Resources" / "fonts"
     written = []
     with packages.needed():

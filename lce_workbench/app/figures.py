@@ -125,6 +125,14 @@ class Figure:
         """All visible edges as runs of points, (n, 2) each."""
         return [*(np.concatenate([ring, ring[:1]]) for ring in self.outlines), *self.lines]
 
+    def vertices(self, near: float) -> Floats:
+        """(n, 2) ends of the visible edges [mm], as TechDraw numbers them: those that lie within ``near``, relative to
+        the size, are one, where it appears first.
+        """
+        points = np.concatenate(self.edges)
+        same = np.abs(points[:, None] - points).max(axis=2) <= near * max(self.size)
+        return np.asarray(points[same.argmax(axis=1) == np.arange(len(points))])
+
     @property
     def box(self) -> tuple[Floats, Floats]:
         """Lower left and upper right corner of the visible edges, (2,) each [mm]."""

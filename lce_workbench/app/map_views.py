@@ -88,6 +88,6 @@ def _grid(subject: Subject) -> tuple[list[Stroke], list[Label]]:
     xs = np.arange(np.ceil(sheet.x0 / step), np.floor(sheet.x1 / step) + 1) * step
     ys = np.arange(np.ceil(sheet.y0 / step), np.floor(sheet.y1 / step) + 1) * step
     lines = [[(x, sheet.y0), (x, sheet.y1)] for x in xs] + [[(sheet.x0, y), (sheet.x1, y)] for y in ys]
-    below = [Label(f"{x:g}", (float(x), sheet.y0), (0.0, -5.5)) for x in xs]
-    right = [Label(f"{y:g}", (sheet.x1, float(y)), (3.0, -1.2), "start") for y in ys]
+    below = [Label(f"{x + 0.0:g}", (float(x), sheet.y0), (0.0, -5.5)) for x in xs]
+    right = [Label(f"{y + 0.0:g}", (sheet.x1, float(y)), (3.0, -1.2), "start") for y in ys]
     return [Stroke(np.array(line), "grid", closed=False, layer="GRID") for line in lines], below + right

@@ -21,6 +21,7 @@ def plate_face(subject: Subject, plate: Plate) -> Figure:
     lower, upper = (0, 3) if plate == "bottom" else (1, 2)  # of the corners, those that are seen on the left
     low, high = marks[lower], marks[upper]
     west, east, south, north = (point(edge[0]) for edge in extremes(sheet))
+    bands = [band for band in frame.bands if min(band.size) > 0 and subject.job.marks.fields]
     return Figure(
         f"{plate}_face",
         "VIEW ON THE PATTERNED FACE" + (", MIRRORED" if plate == "top" else ""),
@@ -37,7 +38,7 @@ def plate_face(subject: Subject, plate: Plate) -> Figure:
             *(Stroke(strip.ring * turn, "phantom", layer="SPACER") for strip in frame.strips),
             *(Stroke(ring * turn, "thin", layer="SHEET") for ring in subject.rims),
             *boxes(marks),
-            *(Stroke(band.ring * turn, "dashed", layer="FIELDS") for band in frame.bands if min(band.size) > 0),
+            *(Stroke(band.ring * turn, "dashed", layer="FIELDS") for band in bands),
             *_origin(),
         ),
         numbers(marks),
@@ -101,7 +102,7 @@ def spacer_edge(subject: Subject) -> Figure:
         "strip_edge",
         "EDGE OF THE STRIP",
         (outline,),
-        (Dim("strip_thickness", (width, 0.0), (width, thickness), "y", 14, "um"),),
+        (Dim("strip_thickness", (width, 0.0), (width, thickness), "y", 14, "um", side=-1),),
         (Stroke(outline, "none", hatch="mylar"), zigzag(0.0, 0.0, thickness)),
     )
 

@@ -71,7 +71,7 @@ def gauge(subject: Subject) -> Figure:
         (
             Dim("square", (inner, far), (far, far), "x", 8, "um"),
             Dim("window", (-inner, far), (inner, far), "x", 16, "um"),
-            Dim("clearance", (reach, arm), (far, inner), "y", 9, "um"),
+            Dim("clearance", (reach, arm), (far, inner), "y", 9, "um", side=-1),
             Dim("arm", (-arm, lowest), (arm, lowest), "x", -8, "um"),
             Dim("reach", (-reach, -arm), (reach, -arm), "x", -16, "um"),
         ),
@@ -203,7 +203,7 @@ def channel_section(subject: Subject) -> Figure:
         "SECTION ACROSS THE CHANNELS",
         (),
         (
-            Dim("channel_width", (0.0, 0.0), (w, 0.0), "x", 10, "um"),
+            Dim("channel_width", (0.0, 0.0), (w, 0.0), "x", 10, "um", side=-1),
             Dim("channel_spacing", (w, 0.0), (spec.pitch, 0.0), "x", 10, "um"),
             Dim("channel_pitch", (0.0, 0.0), (spec.pitch, 0.0), "x", 20, "um"),
             Dim("channel_depth", (end - s, -d), (end, 0.0), "y", 12, "um"),
@@ -237,7 +237,7 @@ def channel_ends(subject: Subject) -> Figure:
         (*lying, *standing),
         (
             Dim("guard_both", (-g, 2 * p + w), (g, 2 * p + w), "x", 10, "um"),
-            Dim("channel_width", (-reach, 0.0), (-reach, w), "y", -10, "um"),
+            Dim("channel_width", (-reach, 0.0), (-reach, w), "y", -10, "um", side=-1),
             Dim("channel_pitch", (-reach, 0.0), (-reach, p), "y", -20, "um"),
         ),
         (*(Stroke(ring, "none", fill="#dfe3e9") for ring in (*lying, *standing)), border),

@@ -289,7 +289,7 @@ def drawings(cell: Any, folder: str = "") -> None:
     from lce_workbench.app import drawings as pages
 
     works.require_design(cell)
-    made = pages.add_pages(cell.Document)
+    made = pages.add_pages(cell)
     if folder:
         pages.export(made, Path(folder))
 

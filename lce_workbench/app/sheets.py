@@ -6,6 +6,8 @@ from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 
+import numpy as np
+
 from lce_workbench.app import cell_views, map_views, part_views, pattern_views
 from lce_workbench.app.cell_views import Subject
 from lce_workbench.app.figures import Figure, Placed, Point, Sheet, fitting, micrometres, ratio
@@ -14,6 +16,7 @@ from lce_workbench.core.domains import Plate
 from lce_workbench.core.frame import arrange
 from lce_workbench.core.job import Job
 from lce_workbench.core.marks import fingerprint
+from lce_workbench.core.replication import settings
 from lce_workbench.core.units import UM
 from lce_workbench.core.workshop import beads
 
@@ -59,16 +62,31 @@ def assembly(subject: Subject) -> Sheet:
             ("4", "1", "Film", "LCE, see design", f"thickness {job.sheet.thickness:g}", "7"),
             ("5", "1", "Channel layer, top", "epoxy", layer, "3, 6"),
             ("6", "1", "Carrier, top", "glass", glass, "3"),
-            *(("7", "2", "Glue bead", "adhesive", f"{side} wide", "") for side in _bead(subject)),
+            *((str(7 + k), *row, "") for k, row in enumerate([*_bead(subject), *_jig(subject)])),
         ),
         (168, 110),
         (14, 13, 66, 52, 70, 22),
     )
 
 
-def _bead(subject: Subject) -> list[str]:
-    """Width of the glue beads [mm], if there are any."""
-    return [f"{bead.size[0]:g}" for bead in beads(subject.frame, subject.job)[:1]]
+Row = tuple[str, str, str, str]
+
+
+def _bead(subject: Subject) -> list[Row]:
+    """The glue beads of the parts list, if there are any."""
+    wide = [bead.size[0] for bead in beads(subject.frame, subject.job)[:1]]
+    return [("2", "Glue bead", "adhesive", f"{width:g} wide") for width in wide]
+
+
+def _jig(subject: Subject) -> list[Row]:
+    """The alignment frame of the parts list, if the job asks for one; it is not drawn, being no part of the cell."""
+    frames = [prism for prism in subject.cell.parts if prism.name == "alignment_frame"]
+    wall = subject.job.plates.frame_mm
+    return [
+        ("1", f"Alignment frame, {frame.z1 - frame.z0:g} high (a tool)", "printed, not drawn", f"opening {size}")
+        for frame in frames
+        for size in ["{:g} x {:g}, wall {:g}".format(*np.ptp(frame.holes[0], axis=0), wall)]
+    ]
 
 
 def _workshop(job: Job) -> list[str]:
@@ -85,10 +103,7 @@ def _workshop(job: Job) -> list[str]:
 
 def bottom_plate(subject: Subject) -> Sheet:
     """The bottom plate on its patterned face, which looks up."""
-    notes = (
-        "Seen on the patterned face, which looks up in the cell: same as from above.",
-        "Phantom lines: the spacer strips. Dashed: test fields.",
-    )
+    notes = ("Seen on the patterned face, which looks up in the cell: same as from above.", *_casts(subject.job))
     return _plate(subject, "bottom", 2, "seen on its patterned face", notes)
 
 
@@ -96,10 +111,17 @@ def top_plate(subject: Subject) -> Sheet:
     """The top plate on its patterned face, mirrored against the assembly."""
     notes = (
         "SEEN ON THE PATTERNED FACE, which looks down in the cell: mirrored against the assembly (x to -x).",
-        "The mask files top.* are mirrored in the same way: do not mirror them again.",
-        "Phantom lines: the spacer strips. Dashed: test fields.",
+        *(_casts(subject.job) or ["The mask files top.* are mirrored in the same way: do not mirror them again."]),
     )
     return _plate(subject, "top", 3, "seen on its patterned face: MIRRORED", notes)
+
+
+def _casts(job: Job) -> list[str]:
+    """What an odd number of casts asks for at the writer."""
+    casts = job.plates.replications
+    if not settings(casts).mirror:
+        return []
+    return [f"Odd number of casts, {casts}: mirror BOTH mask files, and invert them; see the job sheet of the masks."]
 
 
 def _plate(subject: Subject, plate: Plate, number: int, subtitle: str, notes: tuple[str, ...]) -> Sheet:
@@ -117,6 +139,7 @@ def _plate(subject: Subject, plate: Plate, number: int, subtitle: str, notes: tu
         (Placed(face, scale, (140, 170)), Placed(side, scale, (270, 170))),
         (
             *notes,
+            "Phantom lines: the spacer strips." + " Dashed: test fields." * bool(subject.job.marks.fields),
             *_workshop(subject.job),
             "Origin: middle of the sheet. Details of the marks: sheet 5; of the channels: sheet 6.",
         ),
@@ -275,13 +298,19 @@ def title_block(sheet: Sheet, subject: Subject) -> dict[str, str]:
         "sheet": f"{number} of {len(names)}",
         "material": sheet.material,
         "tolerance": sheet.tolerance,
-        "author": subject.job.output.author,
-        "date": subject.job.output.date,
+        "author": shortened(subject.job.output.author, 27),
+        "date": shortened(subject.job.output.date, 21),
         "design": subject.code,
         "number": f"{subject.code}-{number}",
         "units": "in mm unless a unit stands beside it",
         "maker": "LCE molds",
     }
+
+
+def shortened(text: str, most: int) -> str:
+    """A text on one line of so many characters at most."""
+    line = " ".join(text.split())
+    return line if len(line) <= most else line[: most - 3] + "..."
 
 
 def caption(view: Placed) -> str:

@@ -1,5 +1,6 @@
 """The fabrication drawings: dimensions are the job's, follow it, and stand in every file; the DXF is exact."""
 
+import re
 import xml.etree.ElementTree as ET
 
 import drawing_steps as steps
@@ -11,6 +12,7 @@ import sheets
 from freecad_call import FreeCAD
 
 from lce_workbench.app.figures import Dim, Figure, fitting, hatching, spans
+from lce_workbench.app.sheets import sheets as scenes
 from lce_workbench.cli import main
 from lce_workbench.core import jobfile
 from lce_workbench.core.frame import arrange
@@ -59,6 +61,9 @@ def drawn(plan, tmp_path_factory):
         ("ChannelsParameters", "Depth", "500 nm"),
         ("ChannelsParameters", "Width", "2 um"),
         ("SpacerParameters", "Strip", "3 mm"),
+        ("SpacerParameters", "Bead", "0 mm"),
+        ("PlatesParameters", "Carrier", "75x25"),
+        ("PlatesParameters", "Notch", "0 mm"),
     ]
     freecad = FreeCAD(tmp_path_factory.mktemp("user") / "home")
     return folder, freecad.console(steps.draw, folder=str(folder), job=JOB, changes=changes)
@@ -143,16 +148,44 @@ def test_fills_and_words_lie_above_the_views_faces(drawn):
         assert types.index("TechDraw::DrawViewSymbol") > last
 
 
-def test_dimensions_follow_the_parameters(drawn, plan):
-    values = ("sheet.gap_um=100", "channels.depth_um=0.5", "channels.width_um=2", "spacer.strip_mm=3")
-    now = jobfile.parse(JOB, settings=values)
+NOW = (
+    "sheet.gap_um=100", "channels.depth_um=0.5", "channels.width_um=2", "spacer.strip_mm=3", "spacer.bead_mm=0",
+    "plates.carrier=75x25", "plates.notch_mm=0",
+)  # fmt: skip
+
+
+def test_dimensions_and_scales_follow_the_parameters(drawn, plan):
+    """Although glue and notch, which are gone, had corners that are numbered before those of the dimensions."""
+    now = jobfile.parse(JOB, settings=NOW)
     assert_measured(drawn[1]["changed"], plan, now)
     assert drawn[1]["changed"] == drawn[1]["again"]
+    placed = {f"View_{s.name[2:]}_{v.figure.name}": v for s in scenes(drawn[0] / "design.npz", now) for v in s.views}
+    assert drawn[1]["scales"] == pytest.approx({name: view.scale for name, view in placed.items()})
+
+
+def test_a_dimension_that_was_moved_by_hand_stays_there(drawn):
+    assert drawn[1]["moved"] == 7.0
 
 
 def test_a_second_call_brings_the_set_up_to_date(drawn):
-    assert drawn[1]["objects"] == drawn[1]["objects again"]
+    assert drawn[1]["objects"] == drawn[1]["objects again"] + 1  # the glue's balloon
+    assert "7" not in drawn[1]["balloons"]
     assert drawn[1]["authors"] == 7 * ["B. Other"]
+
+
+def test_no_view_has_a_face_that_hides_what_stands_beside_it(drawn):
+    for name in NAMES:
+        for folder in ("drawings", "changed"):
+            text = (drawn[0] / folder / f"{name}.svg").read_text()
+            assert not re.search('fill="#ffffff"[^>]*stroke="none"', text), (folder, name)
+
+
+def test_each_cell_of_a_document_has_drawings_of_its_own(drawn, tmp_path):
+    freecad = FreeCAD(tmp_path / "home")
+    first, second, again = freecad.console(steps.two_cells, folder=str(drawn[0]), job=JOB, gap="100 um")
+    assert (first[0], second[0], again[0]) == pytest.approx((0.15, 0.1, 0.15))
+    assert first[1] == second[1] == again[1] == 7
+    assert again[2] == second[2] > first[2]
 
 
 @pytest.mark.parametrize("kind", ["svg", "pdf"])
