@@ -54,8 +54,9 @@ def two_cells(folder, job, gap):
     from pathlib import Path
 
     import FreeCAD
+    from missing_steps import message
 
-    from lce_workbench.app import drawings
+    from lce_workbench.app import drawings, session
     from lce_workbench.app.document import new_cell, take_design
     from lce_workbench.core import jobfile
 
@@ -68,7 +69,9 @@ def two_cells(folder, job, gap):
         pages = drawings.add_pages(cell)
         shown = [view for view in pages[0].Views if view.Name.endswith("_gap")]
         found.append([shown[0].getRawValue(), len(pages), len(doc.Objects)])
-    return found
+    place = Path(folder) / "a new folder" / "in it"
+    session.drawings(doc.Cell, str(place))
+    return [*found, len(list(place.iterdir())), message(lambda: session.drawings(doc.Cell, "/proc/lce"))[-1:]]
 
 
 def read(doc):

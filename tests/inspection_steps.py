@@ -38,6 +38,7 @@ def sound_and_faulty(design_npz):
         ("strip in the film", doc.SpacerLeft, Vector(into, 0, 0)),
         ("strip under a mark", doc.SpacerRight, Vector(2.0, 0, 0)),
         ("top plate too low", doc.TopPlate, Vector(0, 0, -0.01)),
+        ("top plate aside", doc.TopPlate, Vector(0.03, 0.04, 0)),
         ("the whole cell elsewhere", cell, Vector(3, 4, 5)),
     ):
         obj.Placement.Base += move

@@ -125,7 +125,10 @@ def add_bodies(cell: Any) -> None:
     """Add plates, spacer and film that the cell does not have yet, and what an option may bring later."""
     parts = {prism.name: prism.group for prism in prisms_around(cell).parts}
     for name, group in {**parts, **OPTIONAL}.items():
-        if _body_of(cell, name) is None:
+        there = _body_of(cell, name)
+        if there is not None and there.Shape.isNull():
+            there.touch()  # a damaged file has lost its shape
+        if there is None:
             body = _body(cell, name)
             if name not in parts:  # what is empty tells no colour
                 body.Colour, opacity = LOOKS["glue" if group else "jig"]

@@ -146,6 +146,26 @@ def hidden_window() -> None:
     FreeCADGui.getMainWindow().hide()
 
 
+def require_window(doc: Any) -> None:
+    """Refuse a document that no window knows, hidden or not: TechDraw cannot draw it.
+
+    Raises
+    ------
+    EnvironmentFault
+        There is none, or it was started after the document.
+    """
+    try:
+        import FreeCADGui
+
+        FreeCADGui.getDocument(doc.Name)
+    except (ImportError, AttributeError, NameError):
+        msg = (
+            "drawings need FreeCAD's window, at least a hidden one; call lce_workbench.app.drawings.hidden_window() "
+            "before the document is opened, or run `./lce drawings` on an output folder"
+        )
+        raise EnvironmentFault(msg) from None
+
+
 def add_pages(cell: Any) -> list[Any]:
     """Add the set of drawings of a cell to its document, one page a sheet, or bring the one that it has up to date.
 

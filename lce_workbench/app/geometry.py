@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
+from lce_solver.errors import InputError
 from lce_solver.types import Design
 from lce_workbench.core.cell import Cell
 from lce_workbench.core.channels import ChannelField
@@ -20,6 +21,20 @@ from lce_workbench.outputs import read_design
 from lce_workbench.packages import needed
 
 
+def changed_at(path: Path) -> int:
+    """When a design's file was changed [ns].
+
+    Raises
+    ------
+    InputError
+        It is not there.
+    """
+    if not path.is_file():
+        msg = f"the design's file {path.name} is not in this document, which is damaged; run Design again"
+        raise InputError(msg)
+    return path.stat().st_mtime_ns
+
+
 def stored(path: Path, job: Job | None = None, made_for: Job | None = None) -> Design:
     """The design of a file, with the twist of the ``job`` where it was ``made_for`` another one.
 
@@ -31,7 +46,7 @@ def stored(path: Path, job: Job | None = None, made_for: Job | None = None) -> D
     EnvironmentFault
         The twist has to be solved anew, and SciPy is missing.
     """
-    changed = path.stat().st_mtime_ns
+    changed = changed_at(path)
     if job is None or made_for is None or _same_twist(job, made_for):
         return _read(path, changed)
     return _retwisted(path, changed, _narrowed(job, made_for))
@@ -83,7 +98,7 @@ def domains_of(path: Path, job: Job, made_for: Job | None = None) -> Domains:
 def fields_of(path: Path, job: Job, made_for: Job | None = None) -> Mapping[Plate, ChannelField]:
     """The channels of both plates, whatever their depth: the same objects as long as they are the same channels."""
     made_for = made_for or job
-    return _fields(path, path.stat().st_mtime_ns, _narrowed(job, made_for), made_for)
+    return _fields(path, changed_at(path), _narrowed(job, made_for), made_for)
 
 
 @lru_cache(maxsize=4)
@@ -106,7 +121,7 @@ def _divided(path: Path, job: Job, made_for: Job) -> Domains:
 
 def assembled(path: Path, job: Job, made_for: Job | None = None) -> Cell:
     """The cell around the design of a file."""
-    return _assembled(path, path.stat().st_mtime_ns, job, made_for)
+    return _assembled(path, changed_at(path), job, made_for)
 
 
 @lru_cache(maxsize=4)

@@ -33,10 +33,11 @@ def inspected(cell: Any) -> tuple[Finding, ...]:
     parts = {obj.Prisms: placed(cell, obj) for obj in bodies if not obj.Prisms.startswith("channels")}
     job = job_of(cells.sections(cell).values())
     return (
-        _current(bodies),
+        _current([*cells.sections(cell).values(), *bodies]),
         _corrected(cell, job),
         _kernel(bodies),
         _gap(parts, job),
+        _aligned(cell, job, marks(cell, job)),
         _interference(parts),
         _marks(parts, marks(cell, job)),
     )
@@ -64,12 +65,12 @@ def marks(cell: Any, job: Job) -> Floats:
     return arrange(stored(Path(design.File), job, cells.made_for(design)).uv, job).marks
 
 
-def _current(bodies: list[Any]) -> Finding:
-    """Bodies that FreeCAD could not compute."""
-    bad = [obj for obj in bodies if not obj.isValid()]
+def _current(objects: list[Any]) -> Finding:
+    """Parameters and bodies that FreeCAD could not compute."""
+    bad = [obj for obj in objects if not obj.isValid()]
     why = "".join(f"{obj.Label}: {obj.getStatusString()}; " for obj in bad)
-    names = " ".join(obj.Prisms for obj in bad)
-    return judged("body_state", f"{why}bodies that could not be computed:", len(bad), 0.0, where=names)
+    names = " ".join(obj.Prisms if cells.kind_of(obj) == "Body" else obj.Section for obj in bad)
+    return judged("body_state", f"{why}parameters and bodies that could not be computed:", len(bad), 0.0, where=names)
 
 
 def _corrected(cell: Any, job: Job) -> Finding:
@@ -98,6 +99,20 @@ def _gap(parts: Shapes, job: Job) -> Finding:
     text = f"the gap between the epoxy faces is {gap / UM:.6f} um; from the spacer it differs by"
     off = abs(gap - job.sheet.thickness) / NM
     return judged("body_gap", text, off, 1.0, unit="nm", where="top_land and bottom_land")
+
+
+def _aligned(cell: Any, job: Job, middles: Floats) -> Finding:
+    """How far apart sideways the marks of the plates stand, which may have been moved by hand."""
+    from FreeCAD import Vector
+
+    at = {obj.Prisms: obj.getGlobalPlacement() for obj in works.bodies(cell)}
+    shift = at["bottom_land"].inverse() * at["top_land"]
+    moved = np.array([tuple(shift.multVec(Vector(x, y, 0.0)))[:2] for x, y in middles.tolist()])
+    apart = np.linalg.norm(moved - middles, axis=1) / UM
+    worst = int(apart.argmax())
+    where = f"corner {worst}, top_land and bottom_land" if apart[worst] > job.marks.tolerance_um else ""
+    text = "the marks of the plates stand apart by up to"
+    return judged("plates_aligned", text, float(apart[worst]), job.marks.tolerance_um, unit="um", where=where)
 
 
 def _interference(parts: Shapes) -> Finding:

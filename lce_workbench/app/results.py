@@ -26,6 +26,9 @@ MISSING, CURRENT, STALE = "not computed", "current", "stale"
 ROUGH = f"{CURRENT}, but not corrected for this film yet; Predict, Mask or Export does it"
 """A design whose twist follows the film's thickness by the formula alone."""
 
+LOST = f"{STALE}: its file is not in this document, which is damaged"
+"""A design without its file."""
+
 MARK = " (stale)"
 """What a stale result adds to its label."""
 
@@ -46,7 +49,7 @@ class Result(Proxy):
     def onDocumentRestored(self, obj: Any) -> None:  # noqa: N802 - FreeCAD's name
         """Tell the status of a result from before there was one."""
         super().onDocumentRestored(obj)
-        if obj.Status == MISSING:
+        if obj.Status == MISSING or self.state(obj) == LOST:
             obj.Status = self.state(obj)
 
     def execute(self, obj: Any) -> None:
@@ -110,14 +113,16 @@ class DesignData(Result):
         return {**found, **files}
 
     def state(self, obj: Any) -> str:
-        """As of every result; and whether its twist was corrected."""
+        """As of every result; and whether its file is there, and its twist was corrected."""
+        if obj.File and not Path(obj.File).is_file():
+            return LOST
         found = super().state(obj)
         return ROUGH if found == CURRENT and is_rough(job_of(obj.Parameters), cells.made_for(obj)) else found
 
     def execute(self, obj: Any) -> None:
         """Tell the state, and the figures for the film as it is now."""
         super().execute(obj)
-        if not obj.File:
+        if not obj.File or obj.Status == LOST:
             return
         design = stored(Path(obj.File), job_of(obj.Parameters), cells.made_for(obj))
         obj.Domains = len(design.theta)

@@ -29,7 +29,7 @@ from lce_workbench.app.results import CURRENT
 from lce_workbench.core import jobfile
 from lce_workbench.core.job import Job
 from lce_workbench.core.mask import refuse_unwritable
-from lce_workbench.outputs import as_record, read_manifest
+from lce_workbench.outputs import as_record, read_manifest, told
 
 Settings = Mapping[str, Any]
 """``section.key`` -> value; `None` takes an optional value back."""
@@ -73,12 +73,17 @@ def job_with(job: Job, settings: Settings) -> Job:
         section, _, key = name.partition(".")
         part = table.setdefault(section, {})
         part[key] = list(value) if isinstance(value, tuple) else value
-        if value is None:
+        if value is None and key in _keys(section):
             del part[key]
     found = jobfile.parse(jobfile.dump(jobfile.from_table(table, "cell")), "cell")
     if any(name.startswith(("channels.", "marks.", "output.")) for name in settings):
         refuse_unwritable(found)
     return found
+
+
+def _keys(section: str) -> set[str]:
+    """Names of a section's parameters in a job file; none where there is no such section."""
+    return {jobfile.toml_name(f) for f in fields(SECTIONS[section])} if section in SECTIONS else set()
 
 
 def job(cell: Any) -> Job:
@@ -102,12 +107,13 @@ def set_parameters(cell: Any, settings: Settings) -> None:
     Raises
     ------
     InputError
-        A setting is unknown or out of its limits; nothing is changed.
+        A setting is unknown, out of its limits, or driven by an expression; nothing is changed.
     """
     wanted = job_with(job(cell), settings)
-    objects = cells.sections(cell)
-    _require_files(changes(job(cell), wanted))
-    for name in changes(job(cell), wanted):
+    objects, changed = cells.sections(cell), changes(job(cell), wanted)
+    _require_files(changed)
+    _require_free(objects, changed)
+    for name in changed:
         section, _, key = name.partition(".")
         part, obj = getattr(wanted, section), objects[section]
         for prop in properties(SECTIONS[section]):
@@ -116,6 +122,17 @@ def set_parameters(cell: Any, settings: Settings) -> None:
                 if FILES.get(section) == key:
                     _keep(obj, getattr(part, prop.field))
     cell.Document.recompute()
+
+
+def _require_free(objects: Mapping[str, Any], settings: Settings) -> None:
+    """Refuse values that an expression would overwrite."""
+    for name in settings:
+        section, _, key = name.partition(".")
+        driven = dict(objects[section].ExpressionEngine)
+        for prop in properties(SECTIONS[section]):
+            if prop.field.rstrip("_") == key and prop.name in driven:
+                msg = f"{name} is what the expression {driven[prop.name]} says; change what it names, or clear it"
+                raise InputError(msg)
 
 
 def _require_files(settings: Settings) -> None:
@@ -203,8 +220,9 @@ def channel_window(cell: Any, domains: tuple[int, ...] = ()) -> None:
     InputError
         There is no design, a domain does not exist, or the solids would be too many.
     """
-    works.require_design(cell)
-    set_parameters(cell, {"output.step_domains": tuple(domains)})
+    settings = {"output.step_domains": tuple(domains)}
+    works.solids(cell, job_with(job(cell), settings))  # refuses domains that are not there
+    set_parameters(cell, settings)
     document.add_window(cell)
     cell.Document.recompute()
 
@@ -281,17 +299,22 @@ def _written(cell: Any, name: str, out: Path | str) -> None:
 def drawings(cell: Any, folder: str = "") -> None:
     """Add the fabrication drawings to the document, or write them as PDF, SVG and DXF to a folder.
 
+    A script calls ``lce_workbench.app.drawings.hidden_window()`` before it makes or opens the document.
+
     Raises
     ------
     LceError
-        There is no current design, or TechDraw does not work.
+        There is no current design, TechDraw does not work, or the folder cannot be written.
     """
     from lce_workbench.app import drawings as pages
 
     works.require_design(cell)
+    pages.require_window(cell.Document)
     made = pages.add_pages(cell)
     if folder:
-        pages.export(made, Path(folder))
+        with told(Path(folder)):
+            Path(folder).mkdir(parents=True, exist_ok=True)
+            pages.export(made, Path(folder))
 
 
 EXAMPLES: dict[str, Settings] = {

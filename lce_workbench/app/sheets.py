@@ -11,7 +11,7 @@ import numpy as np
 from lce_workbench.app import cell_views, map_views, part_views, pattern_views
 from lce_workbench.app.cell_views import Subject
 from lce_workbench.app.figures import Figure, Placed, Point, Sheet, fitting, micrometres, ratio
-from lce_workbench.app.geometry import assembled, domains_of, stored
+from lce_workbench.app.geometry import assembled, changed_at, domains_of, stored
 from lce_workbench.core.domains import Plate
 from lce_workbench.core.frame import arrange
 from lce_workbench.core.job import Job
@@ -266,7 +266,7 @@ SHEETS: tuple[Callable[[Subject], Sheet], ...] = (
 
 def sheets(path: Path, job: Job, made_for: Job | None = None) -> tuple[Sheet, ...]:
     """The set of drawings of the design in a file, for a job; ``made_for`` is the one that it was solved for."""
-    return _sheets(path, path.stat().st_mtime_ns, job, made_for)
+    return _sheets(path, changed_at(path), job, made_for)
 
 
 @lru_cache(maxsize=4)
@@ -276,7 +276,7 @@ def _sheets(path: Path, changed: int, job: Job, made_for: Job | None) -> tuple[S
 
 def subject_of(path: Path, job: Job, made_for: Job | None = None) -> Subject:
     """What is drawn of the design in a file."""
-    return _subject(path, path.stat().st_mtime_ns, job, made_for)
+    return _subject(path, changed_at(path), job, made_for)
 
 
 @lru_cache(maxsize=4)

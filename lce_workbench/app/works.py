@@ -135,7 +135,7 @@ def require_bodies(cell: Any) -> None:
         There are none, or a part of them was deleted.
     """
     require_design(cell)
-    if not {"bottom_land", "top_land", "sheet"} <= {body.Prisms for body in bodies(cell)}:
+    if not {"bottom_land", "top_land", "sheet"} <= {b.Prisms for b in bodies(cell) if not b.Shape.isNull()}:
         msg = f"{cell.Label} has no plates, or not all of their parts; run Plates and Spacer first"
         raise InputError(msg)
 

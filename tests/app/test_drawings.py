@@ -182,10 +182,14 @@ def test_no_view_has_a_face_that_hides_what_stands_beside_it(drawn):
 
 def test_each_cell_of_a_document_has_drawings_of_its_own(drawn, tmp_path):
     freecad = FreeCAD(tmp_path / "home")
-    first, second, again = freecad.console(steps.two_cells, folder=str(drawn[0]), job=JOB, gap="100 um")
+    first, second, again, files, (refused,) = freecad.console(
+        steps.two_cells, folder=str(drawn[0]), job=JOB, gap="100 um"
+    )
     assert (first[0], second[0], again[0]) == pytest.approx((0.15, 0.1, 0.15))
     assert first[1] == second[1] == again[1] == 7
     assert again[2] == second[2] > first[2]
+    assert files == 3 * 7 + 1
+    assert refused.startswith("/proc/lce cannot be written")
 
 
 @pytest.mark.parametrize("kind", ["svg", "pdf"])

@@ -29,7 +29,7 @@ def freecad(tmp_path):
 def test_faults_are_found_where_they_are(design, freecad):
     found = freecad.console(steps.sound_and_faulty, design_npz=design)
     assert "Traceback" not in freecad.said
-    checks = {"body_state", "body_volume", "body_gap", "interference", "marks_seen"}
+    checks = {"body_state", "body_volume", "body_gap", "plates_aligned", "interference", "marks_seen"}
     assert checks <= found["sound"].keys()
     assert found["errors"] == 0
     assert found["status"] == "current"
@@ -45,6 +45,9 @@ def test_faults_are_found_where_they_are(design, freecad):
     assert "top_" in where
     assert volume > 0
     assert errors("top plate too low")["body_gap"][0] == pytest.approx(10_000, rel=1e-6)  # nm
+    assert errors("top plate aside").keys() == {"plates_aligned"}
+    apart, where = errors("top plate aside")["plates_aligned"]
+    assert (apart, where) == (pytest.approx(50, rel=1e-6), "corner 0, top_land and bottom_land")
     assert errors("another shape")["body_volume"][1] == "bottom_epoxy"
     assert found["changed"].startswith("stale: plates.epoxy_um is now 30.0")
 
