@@ -81,3 +81,32 @@ def cut(path):
     with zipfile.ZipFile(path) as file:
         shapes = [info.header_offset for info in file.infolist() if info.filename.endswith(".brp")]
     return shapes[len(shapes) // 2]
+
+
+def without_addon(path, save_as):
+    """A parameter is edited, and the document saved, where nobody knows our proxies."""
+    import FreeCAD
+
+    doc = FreeCAD.openDocument(str(path))
+    lost = [obj.Name for obj in doc.Objects if getattr(obj, "Proxy", obj) is None]
+    doc.ChannelsParameters.Depth = "1.2 um"
+    doc.recompute()
+    doc.saveAs(str(save_as))
+    return [len(lost), doc.BottomLand.Shape.BoundBox.ZLength]
+
+
+def with_addon_again(path):
+    """The same document at home."""
+    doc = opened(path)
+    from lce_workbench.app import cells, session
+
+    found = {"cells": [cell.Name for cell in cells.cells(doc)]}
+    found["lost"] = [obj.Name for obj in doc.Objects if getattr(obj, "Proxy", obj) is None]
+    found["labels"] = [doc.ChannelsParameters.Label, doc.BottomLand.Label]
+    doc.recompute()
+    found["depth"] = doc.BottomLand.Shape.BoundBox.ZLength
+    session.set_parameters(doc.Cell, {"sheet.gap_um": 150.0})
+    found["gap"] = [doc.SpacerLeft.Shape.BoundBox.ZLength, doc.Design.Status]
+    session.inspect(doc.Cell)
+    found["review"] = [doc.Review.Errors, [o.Name for o in doc.Objects if not o.isValid()]]
+    return found

@@ -10,14 +10,22 @@ from pathlib import Path
 from typing import Any
 
 from lce_solver.errors import InputError
+from lce_workbench.app.revival import is_lost, revive
 from lce_workbench.core import jobfile
 from lce_workbench.core.job import Job
 
 
 def cells(doc: Any) -> list[Any]:
     """The cells of a document: what holds a design."""
-    found = (design.getParentGeoFeatureGroup() for design in doc.Objects if kind_of(design) == "DesignData")
+    found = (design.getParentGeoFeatureGroup() for design in _alive(doc).Objects if kind_of(design) == "DesignData")
     return [cell for cell in found if cell is not None]  # a design may have been copied or moved out of its cell
+
+
+def _alive(doc: Any) -> Any:
+    """The document, whose objects have their proxies again if another FreeCAD took them."""
+    if any(map(is_lost, doc.Objects)):
+        revive(doc)
+    return doc
 
 
 def kind_of(obj: Any) -> str:
@@ -63,6 +71,7 @@ def the_cell(doc: Any, chosen: Any = ()) -> Any:
 
 def result(cell: Any, kind: str) -> Any:
     """The cell's object whose proxy is of class ``kind``, or `None`."""
+    _alive(cell.Document)
     return next((obj for obj in cell.Group if kind_of(obj) == kind), None)
 
 
@@ -89,6 +98,7 @@ def sections(cell: Any) -> dict[str, Any]:
     InputError
         One was deleted: its defaults would silently take its place.
     """
+    _alive(cell.Document)
     found = {obj.Section: obj for obj in cell.OutListRecursive if kind_of(obj) == "Parameters"}
     lost = ", ".join(f.name for f in fields(Job) if f.name not in found)
     if lost:

@@ -43,3 +43,20 @@ def test_a_damaged_document_says_what_it_lost_and_is_mended_where_it_can_be(free
     (sentence,) = found["impossible"]
     assert sentence.startswith("error: Channels: channels.depth_um is -3 um; it must be greater than 0 um")
     assert found["mended"] == ["current", False, 0]
+
+
+def test_a_document_that_was_saved_without_the_workbench_lives_again(freecad, tmp_path):
+    path = tmp_path / "elsewhere.FCStd"
+    stranger = FreeCAD(tmp_path / "stranger", addon=None)
+    lost, depth = stranger.console(steps.without_addon, path=ROOT / steps.DOCUMENT, save_as=path)
+    assert lost > 20
+    assert depth == pytest.approx(0.0006)  # nobody computes it there
+    found = freecad.console(steps.with_addon_again, path=path)
+    assert "Traceback" not in freecad.said
+    assert found["cells"] == ["Cell"]
+    assert found["lost"] == []
+    assert found["labels"] == ["Channels", "Bottom land"]
+    assert found["depth"] == pytest.approx(0.0012)
+    assert found["gap"][0] == pytest.approx(0.15)
+    assert found["gap"][1].startswith("current")
+    assert found["review"] == [0, []]
