@@ -33,6 +33,8 @@ def draw(folder, job, changes):
         setattr(doc.getObject(name), prop, value)
     drawings.recompute(pages)
     found["changed"], found["scales"] = read(doc), scales(doc)
+    texts = [page.Template.EditableTexts for page in pages]
+    found["titles"] = [[text["title"], text["subtitle"], text["material"], text["scale"]] for text in texts]
     doc.OutputParameters.Author = "B. Other"
     pages = drawings.add_pages(doc.Cell)  # brings the former set up to date
     found["again"], found["objects again"] = read(doc), len(doc.Objects)

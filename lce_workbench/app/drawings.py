@@ -74,8 +74,14 @@ class DrawnSymbol(Drawn):
         add(obj, "App::PropertyString", "Svg", "Fills, thin lines, words and tables of the sheet", mode=HIDDEN)
 
     def execute(self, obj: Any) -> None:
-        """Draw it anew."""
-        obj.Svg = symbol(sheet_of(obj))
+        """Draw it anew, and tell it in the title block; what was written there by hand, of which the job says nothing,
+        stays.
+        """
+        sheet = sheet_of(obj)
+        obj.Svg = symbol(sheet)
+        texts = {key: text for key, text in title_block(sheet, subject_of(*_now(obj.Design))).items() if text}
+        for page in (page for view in obj.InList for page in view.InList if hasattr(page, "Template")):
+            page.Template.EditableTexts = {**page.Template.EditableTexts, **texts}
 
 
 def placed_of(view: Any) -> Placed:

@@ -159,7 +159,9 @@ def test_dimensions_and_scales_follow_the_parameters(drawn, plan):
     now = jobfile.parse(JOB, settings=NOW)
     assert_measured(drawn[1]["changed"], plan, now)
     assert drawn[1]["changed"] == drawn[1]["again"]
-    placed = {f"View_{s.name[2:]}_{v.figure.name}": v for s in scenes(drawn[0] / "design.npz", now) for v in s.views}
+    found = scenes(drawn[0] / "design.npz", now)
+    assert drawn[1]["titles"] == [[sheet.title, sheet.subtitle, sheet.material, sheet.scale] for sheet in found]
+    placed = {f"View_{sheet.name[2:]}_{view.figure.name}": view for sheet in found for view in sheet.views}
     assert drawn[1]["scales"] == pytest.approx({name: view.scale for name, view in placed.items()})
 
 
