@@ -31,6 +31,8 @@ def draw(folder, job, changes):
     found["moved"] = moved.X.Value
     for name, prop, value in changes:
         setattr(doc.getObject(name), prop, value)
+    doc.recompute()
+    found["live"] = read(doc)  # as in a window, where nobody asks for the drawings
     drawings.recompute(pages)
     found["changed"], found["scales"] = read(doc), scales(doc)
     texts = [page.Template.EditableTexts for page in pages]

@@ -328,6 +328,8 @@ def _redraw(views: Sequence[Any]) -> None:
         if time.monotonic() > end:
             msg = f"TechDraw did not draw {waiting[0].Label} within {PATIENCE:g} s; end other programs and try again"
             raise EnvironmentFault(msg)
+    for view, figure in parts:
+        hold(view, figure, vertices_of(view))
     for view in views:
         if view.isDerivedFrom("TechDraw::DrawViewDimension"):
             view.recompute()  # of the edges as they are now

@@ -122,8 +122,12 @@ class Figure:
 
     @property
     def edges(self) -> list[Floats]:
-        """All visible edges as runs of points, (n, 2) each."""
-        return [*(np.concatenate([ring, ring[:1]]) for ring in self.outlines), *self.lines]
+        """All visible edges as runs of points, (n, 2) each.
+
+        Rings begin with their second edge: the first, the lowest of a rectangle, often lies on another part's, and
+        FreeCAD 1.0 leaves such edges out, and with them the numbers of the vertices that they would bring.
+        """
+        return [*self.lines, *(np.concatenate([ring[1:], ring[:2]]) for ring in self.outlines)]
 
     def vertices(self, near: float) -> Floats:
         """(n, 2) ends of the visible edges [mm], as TechDraw numbers them: those that lie within ``near``, relative to

@@ -25,7 +25,7 @@ def plate_face(subject: Subject, plate: Plate) -> Figure:
     return Figure(
         f"{plate}_face",
         "VIEW ON THE PATTERNED FACE" + (", MIRRORED" if plate == "top" else ""),
-        (carrier(frame, subject.job, plate) * turn,),
+        (_notch_last(carrier(frame, subject.job, plate), plate) * turn,),
         (
             Dim("plate_width", (x0, y1), (x1, y1), "x", 24),
             Dim("plate_height", (x1, y0), (x1, y1), "y", 26),
@@ -44,6 +44,11 @@ def plate_face(subject: Subject, plate: Plate) -> Figure:
         numbers(marks),
         lines=(*extremes(sheet), *(cross for at in marks for cross in _cross(at))),
     )
+
+
+def _notch_last(ring: Floats, plate: Plate) -> Floats:
+    """The outline (n, 2) of a plate, whose other corners have the same numbers in a view with a notch and without."""
+    return np.roll(ring, 3 - len(ring), axis=0) if plate == "top" else ring
 
 
 def _tip(at: Floats, axis: str) -> Point:

@@ -158,7 +158,7 @@ def test_dimensions_and_scales_follow_the_parameters(drawn, plan):
     """Although glue and notch, which are gone, had corners that are numbered before those of the dimensions."""
     now = jobfile.parse(JOB, settings=NOW)
     assert_measured(drawn[1]["changed"], plan, now)
-    assert drawn[1]["changed"] == drawn[1]["again"]
+    assert drawn[1]["live"] == drawn[1]["changed"] == drawn[1]["again"]
     found = scenes(drawn[0] / "design.npz", now)
     assert drawn[1]["titles"] == [[sheet.title, sheet.subtitle, sheet.material, sheet.scale] for sheet in found]
     placed = {f"View_{sheet.name[2:]}_{view.figure.name}": view for sheet in found for view in sheet.views}
