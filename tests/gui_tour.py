@@ -51,7 +51,6 @@ def shown(mesh, pictures):
             until(lambda: not is_open())
             FreeCADGui.Selection.clearSelection()
             if name == "Plates":
-                source.ViewObject.Visibility = False
                 view.viewIsometric()
                 FreeCADGui.SendMsgToActiveView("ViewFit")
         run("Inspect")

@@ -54,17 +54,13 @@ def the_cell(doc: Any, chosen: Any = ()) -> Any:
     Raises
     ------
     InputError
-        There is none, or there are several and none is chosen.
+        There is none, or there are several and not one of them is chosen.
     """
-    for obj in chosen:
-        for cell in cells(doc):
-            if obj in (cell, *cell.OutListRecursive):
-                return cell
     found = cells(doc) if doc else []
+    found = [cell for cell in found if any(obj in (cell, *cell.OutListRecursive) for obj in chosen)] or found
     if len(found) != 1:
-        msg = (
-            "choose one of the cells in the tree" if found else "there is no cell in this document; start with New cell"
-        )
+        several = "choose one of the cells in the tree, and only one"
+        msg = several if found else "there is no cell in this document; start with New cell"
         raise InputError(msg)
     return found[0]
 

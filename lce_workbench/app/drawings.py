@@ -53,7 +53,7 @@ class DrawnFigure(Drawn):
         add(obj, "App::PropertyStringList", "Texts", "What the dimensions read, in their order", mode=HIDDEN)
         add(obj, "App::PropertyString", "Layout", "Scale and places of its view and dimensions", mode=HIDDEN)
 
-    def execute(self, obj: Any) -> None:
+    def compute(self, obj: Any) -> None:
         """Draw the edges anew; views and dimensions, which are computed after it, get the places that fit them."""
         placed = next(view for view in sheet_of(obj).views if view.figure.name == obj.Figure)
         obj.Shape = _edges(placed.figure)
@@ -73,7 +73,7 @@ class DrawnSymbol(Drawn):
         super().setup(obj)
         add(obj, "App::PropertyString", "Svg", "Fills, thin lines, words and tables of the sheet", mode=HIDDEN)
 
-    def execute(self, obj: Any) -> None:
+    def compute(self, obj: Any) -> None:
         """Draw it anew, and tell it in the title block; what was written there by hand, of which the job says nothing,
         stays.
         """
@@ -189,7 +189,7 @@ def add_pages(cell: Any) -> list[Any]:
         msg = "the cell has no design to draw; solve it first"
         raise InputError(msg)
     subject = subject_of(*_now(design))
-    if former := _pages_of(design):
+    if former := pages_of(design):
         return _updated(former, subject)
     group = doc.addObject("App::DocumentObjectGroup", GROUP)
     pages = []
@@ -205,7 +205,7 @@ def add_pages(cell: Any) -> list[Any]:
     return annotated(pages)
 
 
-def _pages_of(design: Any) -> list[Any]:
+def pages_of(design: Any) -> list[Any]:
     """The pages of the set that shows a design, in order; none when there is no set."""
     sources = sorted((obj for obj in design.InList if cells.kind_of(obj) == "DrawnSymbol"), key=lambda obj: obj.Sheet)
     shown = [view for source in sources for view in source.InList if view.isDerivedFrom("TechDraw::DrawViewSymbol")]

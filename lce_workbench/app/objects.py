@@ -17,6 +17,7 @@ from typing import Any
 
 import FreeCAD
 
+from lce_solver.errors import InputError, LceError
 from lce_workbench.app import cells, migrations
 from lce_workbench.app.geometry import assembled
 from lce_workbench.app.properties import declare, properties, read
@@ -67,6 +68,23 @@ class Proxy:
         if FreeCAD.GuiUp and type(obj.ViewObject.Proxy).__name__ != name:
             getattr(importlib.import_module(module), name)(obj.ViewObject)
 
+    def execute(self, obj: Any) -> None:
+        """What FreeCAD calls: it prints every frame of a fault, and a user's mistake is one sentence."""
+        try:
+            self.compute(obj)
+        except LceError as fault:
+            raise fault.with_traceback(None) from None
+
+    def compute(self, obj: Any) -> None:
+        """Bring the object up to date.
+
+        Raises
+        ------
+        LceError
+            It cannot be, with the values as they are.
+        """
+        raise NotImplementedError
+
     def dumps(self) -> None:
         """Nothing to save (FreeCAD 0.21 and later)."""
 
@@ -114,7 +132,7 @@ class Parameters(Proxy):
             if prop.given == name and prop.name in obj.PropertiesList:
                 obj.setEditorMode(prop.name, EDITABLE if getattr(obj, name) else READ_ONLY)
 
-    def execute(self, obj: Any) -> None:
+    def compute(self, obj: Any) -> None:
         """Check the values; take the mesh from the source.
 
         Raises
@@ -151,7 +169,7 @@ class Body(Proxy):
         add(obj, "App::PropertyColor", "Colour", "Colour at first sight", mode=HIDDEN)
         add(obj, "App::PropertyPercent", "Transparency", "Transparency at first sight", mode=HIDDEN)
 
-    def execute(self, obj: Any) -> None:
+    def compute(self, obj: Any) -> None:
         """Build the shape.
 
         Raises
@@ -207,7 +225,16 @@ def is_fine(shape: Any) -> bool:
 
 
 def prisms_of(obj: Any) -> list[Prism]:
-    """The prisms that a body consists of."""
+    """The prisms that a body consists of.
+
+    Raises
+    ------
+    InputError
+        The design was deleted, or the parameters do not go together.
+    """
+    if obj.Design is None:
+        msg = f"{obj.Label} has lost its design; undo its deletion, or start a new cell"
+        raise InputError(msg)
     cell = prisms_around(cells.cell_of(obj))
     return [prism for prism in (*cell.parts, *cell.channels) if obj.Prisms in {prism.name, prism.group}]
 

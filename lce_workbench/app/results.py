@@ -11,6 +11,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+from lce_solver.compare import Verdict
 from lce_solver.errors import InputError
 from lce_workbench.app import cells
 from lce_workbench.app.geometry import fields_of, is_rough, stored
@@ -52,7 +53,7 @@ class Result(Proxy):
         if obj.Status == MISSING or self.state(obj) == LOST:
             obj.Status = self.state(obj)
 
-    def execute(self, obj: Any) -> None:
+    def compute(self, obj: Any) -> None:
         """Compare with the parameters."""
         obj.Status = self.state(obj)
         stale, label = obj.Status.startswith(STALE), obj.Label.removesuffix(MARK)
@@ -68,6 +69,10 @@ class Result(Proxy):
 
     def values(self, obj: Any) -> Values:
         """Name -> value of all that it would be made for now."""
+        raise NotImplementedError
+
+    def summary(self, obj: Any) -> str:
+        """What came out, in one sentence."""
         raise NotImplementedError
 
     def remember(self, obj: Any) -> None:
@@ -112,6 +117,11 @@ class DesignData(Result):
         files = {p.Section: cells.digest(p.File) for p in obj.Parameters if p.Section in FILES and p.File}
         return {**found, **files}
 
+    def summary(self, obj: Any) -> str:
+        """Domains, size, twist."""
+        size = f"{obj.Width.Value:.4g} x {obj.Height.Value:.4g} mm"
+        return f"{obj.Domains} domains in a sheet of {size}, twisted by {obj.LargestTwist.Value:.3g} deg at most"
+
     def state(self, obj: Any) -> str:
         """As of every result; and whether its file is there, and its twist was corrected."""
         if obj.File and not Path(obj.File).is_file():
@@ -119,9 +129,9 @@ class DesignData(Result):
         found = super().state(obj)
         return ROUGH if found == CURRENT and is_rough(job_of(obj.Parameters), cells.made_for(obj)) else found
 
-    def execute(self, obj: Any) -> None:
+    def compute(self, obj: Any) -> None:
         """Tell the state, and the figures for the film as it is now."""
-        super().execute(obj)
+        super().compute(obj)
         if not obj.File or obj.Status == LOST:
             return
         design = stored(Path(obj.File), job_of(obj.Parameters), cells.made_for(obj))
@@ -141,7 +151,7 @@ class Outcome(Result):
         super().setup(obj)
         add(obj, "App::PropertyLinkGlobal", "Design", "The design that it is made for")
 
-    def execute(self, obj: Any) -> None:
+    def compute(self, obj: Any) -> None:
         """Compare with the parameters.
 
         Raises
@@ -152,7 +162,7 @@ class Outcome(Result):
         if obj.Design is None:
             msg = f"{obj.Label} has lost its design; undo its deletion, or start a new cell"
             raise InputError(msg)
-        super().execute(obj)
+        super().compute(obj)
 
     def state(self, obj: Any) -> str:
         found = super().state(obj)
@@ -177,6 +187,11 @@ class PredictionData(Outcome):
         add(obj, "App::PropertyFloat", "Max", "Largest distance from the target, in % of its diagonal", mode=READ_ONLY)
         add(obj, "App::PropertyBool", "Mirrored", "Whether it becomes the mirror image", mode=READ_ONLY)
 
+    def summary(self, obj: Any) -> str:
+        """The verdict of the judge."""
+        verdict = Verdict[obj.Verdict.upper()].value
+        return f"{verdict}, {obj.Rms:.2g} % of the target's diagonal away (rms), {obj.Max:.2g} % at most"
+
 
 class MaskData(Outcome):
     """The masks of both plates: their channels now, and where they were written last."""
@@ -191,14 +206,18 @@ class MaskData(Outcome):
         add(obj, "App::PropertyInteger", "ChannelsTop", "Channels of the top plate", mode=READ_ONLY)
         add(obj, "App::PropertyString", "Code", "The design's code, as printed on the plates", mode=READ_ONLY)
 
-    def execute(self, obj: Any) -> None:
+    def compute(self, obj: Any) -> None:
         """Count the channels for the film as it is now."""
-        super().execute(obj)
+        super().compute(obj)
         if not obj.Design.File:
             return
         fields = fields_of(Path(obj.Design.File), job_of(obj.Parameters), cells.made_for(obj.Design))
         obj.ChannelsBottom, obj.ChannelsTop = (int(fields[plate].counts.sum()) for plate in PLATES)
         obj.Code = fingerprint(fields["bottom"].domains, fields["bottom"].spec)
+
+    def summary(self, obj: Any) -> str:
+        """Channels and place."""
+        return f"{obj.ChannelsBottom} and {obj.ChannelsTop} channels; the files are in {obj.Folder}"
 
 
 class ReviewData(Outcome):
@@ -214,6 +233,11 @@ class ReviewData(Outcome):
         add(obj, "App::PropertyInteger", "Warnings", "Findings to look at", mode=READ_ONLY)
         add(obj, "App::PropertyStringList", "Findings", "What the checks measured", mode=READ_ONLY)
         add(obj, "App::PropertyStringList", "Records", "The same with values, limits and places, as JSON", mode=HIDDEN)
+
+    def summary(self, obj: Any) -> str:
+        """How much was found."""
+        place = f"; the files are in {obj.Folder}" if obj.Folder else ""
+        return f"errors: {obj.Errors}, warnings: {obj.Warnings}{place}"
 
 
 RESULTS: dict[str, tuple[type[Result], str]] = {

@@ -40,7 +40,7 @@ def new_cell(doc: Any, settings: Settings, source: Any = None) -> Any:
 
     Parameters
     ----------
-    source : a mesh of the document, or (object, "Face1"), as target.
+    source : a mesh of the document, or (object, "Face1", ...), or (object,) for a shell, as target.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def new_cell(doc: Any, settings: Settings, source: Any = None) -> Any:
     cell = document.new_cell(doc, job, Path.cwd())
     if source:
         objects = cells.sections(cell)
-        objects["target"].Source = source if isinstance(source, tuple) else (source, "")
+        objects["target"].Source = (source[0], list(source[1:])) if isinstance(source, tuple) else (source, "")
         objects["target"].Sizes = [objects["sheet"], objects["domains"]] if isinstance(source, tuple) else []
     cell.Document.recompute()
     return cell
@@ -209,6 +209,8 @@ def plates(cell: Any) -> None:
     """
     works.require_design(cell)
     document.add_bodies(cell)
+    if source := cells.sections(cell)["target"].Source:
+        source[0].Visibility = False  # it stands where the cell is, and may hide it
     cell.Document.recompute()
 
 

@@ -59,6 +59,7 @@ class StepCommand:
         if self.step.panel:
             return show(self.step, cell.Document, cell)
         if once(cell.Document, self.step.title, f"session.{self.step.call}({path(cell)})"):
+            tell(self.step, cell)
             self.step.after(cell)
         return None
 
@@ -129,13 +130,14 @@ def show(step: Step, doc: Any, cell: Any, source: Any = None) -> None:
 
 
 def chosen_source() -> Any:
-    """The selected mesh, or (object, "Face1"), or `None`."""
+    """The selected mesh, or (object, "Face1", ...), or (object,) for a shell, or `None`."""
     for chosen in FreeCADGui.Selection.getSelectionEx():
         faces = [name for name in chosen.SubElementNames if name.startswith("Face")]
-        if faces:
-            return chosen.Object, faces[0]
         if hasattr(chosen.Object, "Mesh"):
             return chosen.Object
+        shape = getattr(chosen.Object, "Shape", None)
+        if faces or (shape is not None and shape.Faces and not shape.Solids):
+            return chosen.Object, *faces
     return None
 
 
@@ -147,6 +149,15 @@ def refuse(sentence: str) -> None:
     box = QtWidgets.QMessageBox(QtWidgets.QMessageBox.Information, "LCE Mold", sentence, parent=window)
     box.setObjectName("lce_refusal")
     box.open()  # not exec: the window stays alive
+
+
+def tell(step: Step, cell: Any) -> None:
+    """Tell what came out of a step: the tree shows it only to those who know where to look."""
+    made = cells.result(cell, step.makes) if step.makes else None
+    if made is not None:
+        sentence = f"{tr(step.title)}: {made.Proxy.summary(made)}"
+        FreeCAD.Console.PrintMessage(f"LCE Mold: {sentence}\n")
+        FreeCADGui.getMainWindow().statusBar().showMessage(sentence, 30000)
 
 
 def register() -> list[str]:

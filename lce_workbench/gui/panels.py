@@ -20,7 +20,8 @@ from lce_workbench.core import jobfile, material
 from lce_workbench.core.cell import SECONDS
 from lce_workbench.core.job import Job
 from lce_workbench.gui import editors, memory
-from lce_workbench.gui.qt import QtCore, QtWidgets, tr
+from lce_workbench.gui.commands import ICONS, tell
+from lce_workbench.gui.qt import QtCore, QtGui, QtWidgets, tr
 from lce_workbench.gui.record import say
 from lce_workbench.gui.running import Running
 from lce_workbench.gui.steps import Step, presets
@@ -49,7 +50,9 @@ class Panel:
     def build(self) -> Any:
         """The form."""
         form = QtWidgets.QWidget()
-        form.setWindowTitle(tr(self.step.title))
+        several = f": {self.cell.Label}" if self.cell and len(session.cells.cells(self.doc)) > 1 else ""
+        form.setWindowTitle(tr(self.step.title) + several)
+        form.setWindowIcon(QtGui.QIcon(str(ICONS / f"{self.step.icon}.svg")))
         form.setMinimumWidth(WIDTH)
         column = QtWidgets.QVBoxLayout(form)
         if self.source is not None:
@@ -284,6 +287,7 @@ class Panel:
         self.doc.commitTransaction()
         if self.step.call in {"plates", "new_cell"}:
             FreeCADGui.SendMsgToActiveView("ViewFit")
+        tell(self.step, self.cell)
         memory.remember(self.step.name, {n: e.get() for n, e in self.editors.items()}, folder)
         self.close()
         self.step.after(self.cell)
@@ -353,13 +357,13 @@ def _first(step: Step, source: Any) -> Job:
 
 
 def _name(source: Any) -> str:
-    return str(source[0].Label) + f".{source[1]}" if isinstance(source, tuple) else str(source.Label)
+    return ".".join([str(source[0].Label), *source[1:]]) if isinstance(source, tuple) else str(source.Label)
 
 
 def _path(doc: str, source: Any) -> str:
     """The source as Python."""
     if isinstance(source, tuple):
-        return f"({doc}.getObject({source[0].Name!r}), {source[1]!r})"
+        return f"({doc}.getObject({source[0].Name!r}), {', '.join(map(repr, source[1:]))})"
     return f"{doc}.getObject({source.Name!r})"
 
 

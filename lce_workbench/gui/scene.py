@@ -139,10 +139,13 @@ class Follow:
         for name, scene in list(SCENES.items()):
             if name[0] != doc.Name:
                 continue
-            if doc.getObject(name[1]) is None or not cells.design_of(scene.cell).File:
+            design = doc.getObject(name[1]) and cells.result(scene.cell, "DesignData")
+            if design is None or not design.File:
                 _forget(name).close()
                 continue
             try:
+                if any("Invalid" in obj.State for obj in cells.sections(scene.cell).values()):
+                    continue  # the solids stay as they were, too
                 if scene.key != scene.made_for():
                     scene.draw()
             except LceError as fault:

@@ -152,7 +152,9 @@ class Scene:
     def put_aside(self, away: bool) -> None:
         """Hide the document's objects behind a picture, or show again what it hid."""
         if away:
-            for obj in self.document.RootObjects:
+            for obj in self.document.Objects:
+                if obj.getParentGeoFeatureGroup() is not None:
+                    continue  # what holds it is hidden; the mesh that a target is taken from is linked, not held
                 switch = getattr(obj.ViewObject, "SwitchNode", None)
                 if switch is not None and switch.whichChild.getValue() != coin.SO_SWITCH_NONE:
                     self.aside[obj.Name] = switch.whichChild.getValue()

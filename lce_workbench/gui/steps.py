@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from lce_workbench import ROOT
-from lce_workbench.app import works
+from lce_workbench.app import cells, works
 from lce_workbench.app.child import Work
 from lce_workbench.core.job import Job
 
@@ -43,6 +43,8 @@ class Step:
     new: bool = False
     """Whether it makes a cell; the others need one."""
     panel: bool = True
+    makes: str = ""
+    """Class of the result that tells what came out."""
     after: Callable[[Any], None] = lambda _: None
     """Shows the result of the cell in the window."""
 
@@ -51,7 +53,9 @@ def _first_page(cell: Any) -> None:
     """Open the first drawing."""
     import FreeCADGui
 
-    for page in cell.Document.findObjects("TechDraw::DrawPage")[:1]:
+    from lce_workbench.app.drawings import pages_of
+
+    for page in pages_of(cells.design_of(cell))[:1]:
         page.ViewObject.doubleClicked()
         FreeCADGui.updateGui()
         FreeCADGui.SendMsgToActiveView("ViewFit")
@@ -77,12 +81,13 @@ STEPS = (
         "design", "Design",
         common=("sheet.width_mm", "sheet.gap_um", "domains.size_um", "solver.starts"),
         more=("target", "material", "sheet", "domains", "solver"), presets="spacer",
-        work=lambda cell, job, _: works.design(cell, job),
+        work=lambda cell, job, _: works.design(cell, job), makes="DesignData",
     ),
     Step(
         "Predict", "predict", "Predict…", "Simulates the heating of the sheet and compares it with the target",
         "predict", "Predict",
         common=("prediction.seed",), more=("prediction",), work=lambda cell, job, _: works.predict(cell, job),
+        makes="PredictionData",
     ),
     Step(
         "Plates", "plates", "Plates and Spacer…", "Adds the two plates, the spacer and the film around the sheet",
@@ -100,7 +105,7 @@ STEPS = (
         "Mask", "mask", "Mask…", "Writes the masks of both plates for the laser writer",
         "mask", "Mask",
         common=("output.masks", "output.writer_um", "marks.label"), more=("marks", "output"), presets="writer",
-        work=works.mask, folder=True,
+        work=works.mask, folder=True, makes="MaskData",
     ),
     Step(
         "Drawings", "drawings", "Drawings", "Adds the fabrication drawings of the cell to the document",
@@ -108,16 +113,19 @@ STEPS = (
     ),
     Step(
         "Inspect", "inspect", "Design Review", "Checks the cell, lists its parts and masses, and shows what was found",
-        "inspect", "Design review", panel=False, after=_findings,
+        "inspect", "Design review", panel=False, makes="ReviewData",
+        after=_findings,
     ),
     Step(
         "Review", "review", "Review…", "Writes all files, reads them back and lists what was found",
-        "review", "Review", work=works.review, folder=True, after=_findings,
+        "review", "Review", work=works.review, folder=True,
+        makes="ReviewData", after=_findings,
     ),
     Step(
         "Export", "export", "Export…", "Writes everything: table, masks, CAD files and report, as ./lce build does",
         "export", "Export",
         common=("output.masks",), more=("output",), work=works.export, folder=True,
+        makes="MaskData",
     ),
 )  # fmt: skip
 """In the order of the work."""

@@ -73,6 +73,10 @@ class BodyView(View):
 class ParametersView(View):
     """A section of the parameters."""
 
+    def isShow(self) -> bool:  # noqa: N802  FreeCAD's name
+        """There is nothing to hide: the tree would write the label in grey."""
+        return True
+
     def getIcon(self) -> str:  # noqa: N802  FreeCAD's name
         """The tree's icon."""
         return str(ICONS / ("target.svg" if self.object.Section == "target" else "parameters.svg"))
@@ -85,6 +89,10 @@ class ParametersView(View):
 
 class ResultView(View):
     """A result: what it is made from stands below it, and its icon tells when it is stale."""
+
+    def isShow(self) -> bool:  # noqa: N802  FreeCAD's name
+        """There is nothing to hide: the tree would write the label in grey."""
+        return True
 
     def getIcon(self) -> str:  # noqa: N802  FreeCAD's name
         """The tree's icon."""
