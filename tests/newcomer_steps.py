@@ -15,6 +15,32 @@ def meshed(doc):
     return obj
 
 
+def _right_end(shown):
+    """How far right a picture reaches in its view, and where the legend begins, as shares of the view's width."""
+    import FreeCAD
+
+    from lce_workbench.gui.legend import WIDTH
+
+    wide = shown.view.getSize()[0]
+    points = [FreeCAD.Vector(*point) for skin in shown.skins() for point in skin.points.tolist()]
+    return [max(shown.view.getPointOnScreen(point)[0] for point in points) / wide, 1 - WIDTH / wide]
+
+
+def greeted():
+    """The first words in the window of a user whose FreeCAD is German."""
+    import FreeCADGui
+
+    from lce_workbench.gui.qt import tr
+
+    activate()
+    run("NewCell")
+    bar = FreeCADGui.getMainWindow().menuBar().actions()
+    menu = next(action.menu() for action in bar if "LCE" in action.text())
+    found = [tr("New cell"), widget("reason").parent().windowTitle(), menu.actions()[0].text()]
+    press("Cancel")
+    return found
+
+
 def choose(*objects):
     """Select in the tree, these and nothing else."""
     import FreeCADGui
@@ -58,6 +84,9 @@ def looked(folder):
     found["seen"] = [switch.getValue()]
     for name in ("directors", ""):
         scene.show(cell, name)
+        if name:
+            run("Domains")
+            found["beside the legend"] = _right_end(scene.of(cell))
         found["seen"].append(switch.getValue())
     run("Plates")
     found["panel"] = widget("reason").window() is not None and press("Ok")
@@ -142,7 +171,7 @@ def wrong(folder):
     activate()
     cell = opened(folder)
     doc = cell.Document
-    from lce_workbench.app import cells
+    from lce_workbench.app import cells, works
     from lce_workbench.gui import scene
 
     scene.section(cell, 0.0)
@@ -153,9 +182,15 @@ def wrong(folder):
     found["negative"] = [sheet.getStatusString(), scene.of(cell).key == kept]
     sheet.Gap = "1e-8 mm"
     doc.recompute()
-    found["thin"] = film.getStatusString()
+    found["thin"] = sheet.getStatusString()
     sheet.Gap = "0.1 mm"
     doc.recompute()
+    run("Mask")
+    for place in ("masks", "./masks", "~/masks", "/masks"):
+        write("folder", place)
+        found[place] = widget("reason").text()
+    press("Cancel")
+    found["names"] = [works.file_name(label) for label in ("Größe / 1", "Zelle Ä/ö: 2", "(stale)", "面")]
     found["again"] = [obj.Name for obj in doc.Objects if not obj.isValid()]
     doc.removeObject(cells.design_of(cell).Name)
     doc.recompute()

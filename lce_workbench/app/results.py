@@ -11,7 +11,6 @@ import math
 from pathlib import Path
 from typing import Any
 
-from lce_solver.compare import Verdict
 from lce_solver.errors import InputError
 from lce_workbench.app import cells
 from lce_workbench.app.geometry import fields_of, is_rough, stored
@@ -189,6 +188,8 @@ class PredictionData(Outcome):
 
     def summary(self, obj: Any) -> str:
         """The verdict of the judge."""
+        from lce_solver.compare import Verdict  # needs SciPy, without which a document opens and follows its parameters
+
         verdict = Verdict[obj.Verdict.upper()].value
         return f"{verdict}, {obj.Rms:.2g} % of the target's diagonal away (rms), {obj.Max:.2g} % at most"
 

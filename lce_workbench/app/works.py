@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import tempfile
+import unicodedata
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -184,7 +185,8 @@ def _work(kind: str, cell: Any, job: Job, folder: Path | None, planned: Planned)
 
 def file_name(label: str) -> str:
     """A label as the name of a file."""
-    return re.sub(r"[^a-z0-9]+", "-", label.removesuffix(" (stale)").lower()).strip("-") or "cell"
+    plain = unicodedata.normalize("NFKD", label.removesuffix(" (stale)").casefold())  # "Größe" is "grosse"
+    return re.sub(r"[^a-z0-9]+", "-", plain.encode("ascii", "ignore").decode()).strip("-") or "cell"
 
 
 def _named(job: Job) -> list[str]:

@@ -8,14 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from lce_solver.errors import InputError
 from lce_solver.types import Floats
 from lce_workbench.cad.solids import require_volume
 from lce_workbench.core.polyhedron import polyhedron
 from lce_workbench.core.prism import Prism
-
-THINNEST = 1e-6
-"""Of a solid [mm]: what is thinner than ten times the kernel's tolerance is nothing to it."""
 
 
 def solid(stack: Sequence[Prism]) -> Any:
@@ -27,14 +23,11 @@ def solid(stack: Sequence[Prism]) -> Any:
     Raises
     ------
     LceError
-        The prism is too thin, or the kernel's volume is not that of the prisms.
+        The kernel's volume is not that of the prisms.
     """
     import Part
 
     first = stack[0]
-    if first.z1 - first.z0 < THINNEST:
-        msg = f"{first.name} would be {first.z1 - first.z0:.2g} mm thick; solids are {THINNEST} mm thick at least"
-        raise InputError(msg)
     if len(stack) == 1 and first.upper is None:
         shape, volume = _extruded(tuple(ring.tobytes() for ring in first.rings), first.z0, first.z1)
     else:

@@ -72,7 +72,7 @@ class Sheet:
     """The flat film."""
 
     width_mm: float = param(20.0, "longest side of the flat sheet", unit="mm", above=0.0, high=200.0)
-    gap_um: float = param(100.0, "film thickness = spacer thickness", unit="um", above=0.0, high=5000.0)
+    gap_um: float = param(100.0, "film thickness = spacer thickness", unit="um", above=0.0, low=0.01, high=5000.0)
     twist_gain: float = param(1.0, "multiplies the twist; 2 reproduces the paper's S5 as printed", low=-10.0, high=10.0)
     twist_limit_deg: float = param(
         5.0, "largest twist through the thickness; what is beyond is cut off", unit="deg", above=0.0, high=90.0
@@ -125,7 +125,7 @@ class ChannelSpec:
 
     width_um: float = param(1.0, "channel width", unit="um", above=0.0, high=100.0)
     spacing_um: float = param(1.0, "land between two channels", unit="um", above=0.0, high=100.0)
-    depth_um: float = param(0.6, "channel depth", unit="um", above=0.0, high=100.0)
+    depth_um: float = param(0.6, "channel depth", unit="um", above=0.0, low=0.001, high=100.0)
     guard_um: float = param(
         0.5,
         "channels end this far inside their domain, so that neighbours stay two guards apart",
@@ -178,14 +178,14 @@ class Plates:
         None, "glass width (x); default: smallest standard glass", unit="mm", above=0.0, high=200.0
     )
     height_mm: float | None = param(None, "glass height (y)", unit="mm", above=0.0, high=200.0)
-    glass_mm: float = param(1.0, "glass thickness", unit="mm", above=0.0, high=20.0)
+    glass_mm: float = param(1.0, "glass thickness", unit="mm", above=0.0, low=0.001, high=20.0)
     replications: int = param(
         2,
         "casts from master to plate: PDMS, epoxy; an odd number turns handedness and relief",
         low=0,
         high=9,
     )
-    epoxy_um: float = param(50.0, "epoxy layer under the channels", unit="um", above=0.0, high=5000.0)
+    epoxy_um: float = param(50.0, "epoxy layer under the channels", unit="um", above=0.0, low=0.001, high=5000.0)
     chamfer_mm: float = param(0.0, "chamfer of the glass's outer edges, at 45 deg", unit="mm", low=0.0, high=5.0)
     release_deg: float = param(
         0.0, "release taper of the epoxy's sides, narrower at the film", unit="deg", low=0.0, high=45.0

@@ -141,6 +141,18 @@ def chosen_source() -> Any:
     return None
 
 
+def name_of(source: Any) -> str:
+    """What the panel calls a source."""
+    return ".".join([str(source[0].Label), *source[1:]]) if isinstance(source, tuple) else str(source.Label)
+
+
+def path_of(source: Any) -> str:
+    """A source as Python."""
+    if isinstance(source, tuple):
+        return f"({path(source[0])}, {', '.join(map(repr, source[1:]))})"
+    return path(source)
+
+
 def refuse(sentence: str) -> None:
     """Tell the user why nothing happened."""
     FreeCAD.Console.PrintWarning(f"LCE Mold: {sentence}\n")

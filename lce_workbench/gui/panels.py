@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from contextlib import suppress
 from dataclasses import fields, replace
 from pathlib import Path
@@ -20,7 +21,7 @@ from lce_workbench.core import jobfile, material
 from lce_workbench.core.cell import SECONDS
 from lce_workbench.core.job import Job
 from lce_workbench.gui import editors, memory
-from lce_workbench.gui.commands import ICONS, tell
+from lce_workbench.gui.commands import ICONS, name_of, path_of, tell
 from lce_workbench.gui.qt import QtCore, QtGui, QtWidgets, tr
 from lce_workbench.gui.record import say
 from lce_workbench.gui.running import Running
@@ -56,7 +57,7 @@ class Panel:
         form.setMinimumWidth(WIDTH)
         column = QtWidgets.QVBoxLayout(form)
         if self.source is not None:
-            column.addWidget(QtWidgets.QLabel(tr("Target") + f": {_name(self.source)}"))
+            column.addWidget(QtWidgets.QLabel(tr("Target") + f": {name_of(self.source)}"))
         common = QtWidgets.QFormLayout()
         column.addLayout(common)
         if self.step.presets:
@@ -166,11 +167,19 @@ class Panel:
             return ""  # Qt tells of fields that it is deleting
         try:
             self.require_budget(self.settings())
-            words = "" if not self.step.folder or self.folder.text().strip() else tr("choose a folder for the files")
+            words = self.place()[1]
         except LceError as fault:
             words = str(fault)
         self.tell(words)
         return words
+
+    def place(self) -> tuple[str, str]:
+        """The folder for the files, "" for none; and why there cannot be any."""
+        text = self.folder.text().strip() if self.step.folder else ""
+        folder = os.path.expanduser(text)  # noqa: PTH111  a `Path` drops what is empty
+        if self.step.folder and not text:
+            return "", tr("choose a folder for the files")
+        return folder, f"folder is {text!r}; begin it with / or ~" if text and not Path(folder).is_absolute() else ""
 
     def require_budget(self, settings: dict[str, Any]) -> None:
         """Refuse a channel window that would be too much for this machine.
@@ -222,7 +231,7 @@ class Panel:
             return self.finish(settings)
         try:
             wanted = session.job_with(self.former, settings)
-            work = self.step.work(self.cell, wanted, Path(self.folder.text()) if self.step.folder else Path())
+            work = self.step.work(self.cell, wanted, Path(self.place()[0]))
             self.running = Running(work, self.show, lambda reason: self.ended(reason, settings))
         except LceError as fault:
             self.tell(str(fault))
@@ -275,7 +284,7 @@ class Panel:
 
     def finish(self, settings: dict[str, Any]) -> bool:
         """Change the document, in the transaction that is open since the panel is."""
-        folder = self.folder.text().strip() if self.step.folder else ""
+        folder, _ = self.place()
         try:
             for line in self.lines(settings, folder):
                 say(line)
@@ -298,7 +307,7 @@ class Panel:
         doc = f"App.getDocument({self.name!r})"
         if self.step.new:
             settings = session.changes(Job(), session.job_with(self.former, settings))
-            source = f", {_path(doc, self.source)}" if self.source else ""
+            source = f", {path_of(self.source)}" if self.source else ""
             if self.source:
                 del settings["target.mesh"]
             return [f"session.{self.step.call}({doc}, {settings!r}{source})"]
@@ -353,18 +362,7 @@ def _first(step: Step, source: Any) -> Job:
         job = replace(job, output=replace(job.output, author=memory.author()))
     if not source:
         return job if job.target.surface else replace(job, target=replace(job.target, surface="face"))
-    return replace(job, target=replace(job.target, surface="", mesh=f"{_name(source)}.off"))
-
-
-def _name(source: Any) -> str:
-    return ".".join([str(source[0].Label), *source[1:]]) if isinstance(source, tuple) else str(source.Label)
-
-
-def _path(doc: str, source: Any) -> str:
-    """The source as Python."""
-    if isinstance(source, tuple):
-        return f"({doc}.getObject({source[0].Name!r}), {', '.join(map(repr, source[1:]))})"
-    return f"{doc}.getObject({source.Name!r})"
+    return replace(job, target=replace(job.target, surface="", mesh=f"{name_of(source)}.off"))
 
 
 def _editor(name: str, prop: Any, field: Any, obj: Any) -> editors.Editor:

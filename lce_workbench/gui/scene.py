@@ -46,9 +46,14 @@ def show(cell: Any, name: str) -> None:
     scene.draw()
     if name:
         turn(scene.view, ABOVE if name.startswith("channels") else ASLANT)
-        frame(scene.view, np.concatenate([skin.points for skin in scene.skins()]))
+        fit(scene)
     elif former and scene.camera:
         scene.view.setCamera(scene.camera)
+
+
+def fit(scene: Scene) -> None:
+    """Move the camera, as it is turned, so that it sees the whole picture beside its legend."""
+    frame(scene.view, np.concatenate([skin.points for skin in scene.skins()]))
 
 
 def explode(cell: Any, exploded: bool = True) -> None:

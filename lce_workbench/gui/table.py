@@ -220,8 +220,12 @@ def open_table(cell: Any) -> Table:
         window.addDockWidget(QtCore.Qt.RightDockWidgetArea, TABLES[0])
     table = TABLES[0]
     table.take(cell)
+    narrower, shown = not table.isVisible(), scene.of(cell)
     table.show()
     table.raise_()
+    if narrower and shown.picture:
+        FreeCADGui.updateGui()
+        scene.fit(shown)
     return table
 
 

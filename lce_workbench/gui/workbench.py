@@ -18,6 +18,7 @@ class LceWorkbench(FreeCADGui.Workbench):
     Icon = str(ROOT / "resources" / "icons" / "lce.svg")
 
     def Initialize(self) -> None:  # noqa: N802  FreeCAD's name
+        FreeCADGui.updateLocale()  # else the first words are English: FreeCAD chose its language before it knew ours
         packages.append()
         from lce_workbench.gui import commands, looks
 
