@@ -112,7 +112,10 @@ def set_parameters(cell: Any, settings: Settings) -> None:
     wanted = job_with(job(cell), settings)
     objects, changed = cells.sections(cell), changes(job(cell), wanted)
     _require_files(changed)
-    _require_free(objects, changed)
+    for name, expression in driven(cell).items():
+        if name in changed:
+            msg = f"{name} is what the expression {expression} says; change what it names, or clear it"
+            raise InputError(msg)
     for name in changed:
         section, _, key = name.partition(".")
         part, obj = getattr(wanted, section), objects[section]
@@ -124,15 +127,15 @@ def set_parameters(cell: Any, settings: Settings) -> None:
     cell.Document.recompute()
 
 
-def _require_free(objects: Mapping[str, Any], settings: Settings) -> None:
-    """Refuse values that an expression would overwrite."""
-    for name in settings:
-        section, _, key = name.partition(".")
-        driven = dict(objects[section].ExpressionEngine)
+def driven(cell: Any) -> dict[str, str]:
+    """Setting -> the expression that says its value."""
+    found = {}
+    for section, obj in cells.sections(cell).items():
+        expressions = dict(obj.ExpressionEngine)
         for prop in properties(SECTIONS[section]):
-            if prop.field.rstrip("_") == key and prop.name in driven:
-                msg = f"{name} is what the expression {driven[prop.name]} says; change what it names, or clear it"
-                raise InputError(msg)
+            if prop.name in expressions:
+                found[f"{section}.{prop.field.rstrip('_')}"] = expressions[prop.name]
+    return found
 
 
 def _require_files(settings: Settings) -> None:

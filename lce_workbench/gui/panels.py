@@ -312,7 +312,8 @@ class Panel:
                 del settings["target.mesh"]
             return [f"session.{self.step.call}({doc}, {settings!r}{source})"]
         cell = f"{doc}.getObject({self.cell.Name!r})"
-        change = [f"session.set_parameters({cell}, {settings!r})"] if settings else []
+        free = {name: value for name, value in settings.items() if name not in session.driven(self.cell)}
+        change = [f"session.set_parameters({cell}, {free!r})"] if settings else []
         if self.step.call == "channel_window":
             domains = self.editors["output.step_domains"].get()
             return [*change, f"session.channel_window({cell}, {domains!r})"]
