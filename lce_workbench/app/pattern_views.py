@@ -237,7 +237,7 @@ def channel_ends(subject: Subject) -> Figure:
         (*lying, *standing),
         (
             Dim("guard_both", (-g, 2 * p + w), (g, 2 * p + w), "x", 10, "um"),
-            Dim("channel_width", (-reach, 0.0), (-reach, w), "y", -10, "um", side=-1),
+            Dim("channel_width", (-reach, 2 * p), (-reach, 2 * p + w), "y", -10, "um"),
             Dim("channel_pitch", (-reach, 0.0), (-reach, p), "y", -20, "um"),
         ),
         (*(Stroke(ring, "none", fill="#dfe3e9") for ring in (*lying, *standing)), border),
