@@ -194,9 +194,9 @@ def test_a_twist_of_a_quarter_turn_is_an_error(plan):
 
 def test_a_cap_that_leaves_no_use_of_twist_is_told():
     weak = Material(0.999, 0.5)
-    free = design(hill(), weak, 20.0, 0.1, starts=1, tolerance=1e-6)
+    free = design(hill(6, 5), weak, 20.0, 0.1, starts=1, tolerance=1e-6)
     assert finding(free, "twist_limit").severity is Severity.ERROR
-    capped = design(hill(), weak, 20.0, 0.1, starts=1, tolerance=1e-6, twist_limit=np.radians(5))
+    capped = design(hill(6, 5), weak, 20.0, 0.1, starts=1, tolerance=1e-6, twist_limit=np.radians(5))
     assert finding(capped, "twist_limit").severity is Severity.INFO
     assert finding(capped, "twist_cost").severity is Severity.WARNING
     assert "choose lambda further from 1" in finding(capped, "twist_cost").message
