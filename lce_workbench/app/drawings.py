@@ -19,7 +19,7 @@ import numpy as np
 from lce_solver.errors import EnvironmentFault, InputError
 from lce_workbench import ROOT, packages
 from lce_workbench.app import cells
-from lce_workbench.app.annotations import NEAR, NEW, annotate, assign, hold, lay, layout, set_scale, vertices_of
+from lce_workbench.app.annotations import NEAR, annotate, assign, hold, lay, layout, set_scale, vertices_of
 from lce_workbench.app.cell_views import Subject
 from lce_workbench.app.drawing_files import write_dxf, write_pdf, write_svg
 from lce_workbench.app.figures import Figure, Placed, Sheet
@@ -61,9 +61,7 @@ class DrawnFigure(Drawn):
         former, obj.Layout = obj.Layout, layout(placed)
         for view in obj.InList:
             if view.isDerivedFrom("TechDraw::DrawViewPart"):
-                expected = placed.figure.vertices(NEAR) - placed.figure.middle
-                if not NEW or len(expected) != len(vertices_of(view)):  # FreeCAD 1.0 may number them otherwise
-                    hold(view, placed.figure, expected)
+                hold(view, placed.figure, placed.figure.vertices(NEAR) - placed.figure.middle)
                 if former != obj.Layout:  # else what was moved by hand stays there
                     lay(view, placed)
 
