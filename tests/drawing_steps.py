@@ -9,8 +9,9 @@ def draw(folder, job, changes):
     from pathlib import Path
 
     import FreeCAD
+    from gui_hands import pump
 
-    from lce_workbench.app import drawings
+    from lce_workbench.app import annotations, drawings
     from lce_workbench.app.document import new_cell, take_design
     from lce_workbench.core import jobfile
 
@@ -32,6 +33,8 @@ def draw(folder, job, changes):
     for name, prop, value in changes:
         setattr(doc.getObject(name), prop, value)
     doc.recompute()
+    if annotations.NEW:
+        pump(3.0)  # FreeCAD 1.0 draws views in threads of its own, and measures when they are done
     found["live"] = read(doc)  # as in a window, where nobody asks for the drawings
     drawings.recompute(pages)
     found["changed"], found["scales"] = read(doc), scales(doc)
