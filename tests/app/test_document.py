@@ -10,7 +10,6 @@ import pytest
 import sheets
 from freecad_call import FreeCAD
 from PIL import Image
-from processes import display
 
 from lce_solver.bounded import retwisted
 from lce_solver.twist import second_form
@@ -96,12 +95,6 @@ def fcstd(folder):
 @pytest.fixture
 def freecad(tmp_path):
     return FreeCAD(tmp_path / "home")
-
-
-@pytest.fixture(scope="module")
-def screen():
-    with display() as name:
-        yield name
 
 
 def prisms(design, job):

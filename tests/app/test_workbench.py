@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import json
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from processes import ROOT, Ended, display, environment, start
+from processes import ROOT, Ended, environment, start
 
 FACTS = """
 import json, os, sys
@@ -83,12 +82,6 @@ def assert_whose(found: dict[str, Any], tmp: Path, front: str) -> None:
     assert theirs == [tmp / "other" / name / "__init__.py" for name in ("solver", "tests")]
     path = [Path(entry).resolve() for entry in found["path"]]
     assert (path.index(ROOT) < path.index(tmp / "other")) == (front == "ours")
-
-
-@pytest.fixture(scope="module")
-def screen() -> Iterator[str]:
-    with display() as name:
-        yield name
 
 
 @pytest.mark.parametrize("front", ["ours", "theirs"])

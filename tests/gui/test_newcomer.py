@@ -4,17 +4,10 @@ import newcomer_steps as steps
 import pytest
 import sheets
 from freecad_call import SETTINGS, FreeCAD
-from processes import display
 
 from lce_workbench.outputs import write_design
 
 JOB = '[target]\nsurface = "saddle"\n[sheet]\nwidth_mm = 2.2\n[channels]\nwidth_um = 4.0\nspacing_um = 6.0\n'
-
-
-@pytest.fixture(scope="module")
-def screen():
-    with display() as name:
-        yield name
 
 
 @pytest.fixture

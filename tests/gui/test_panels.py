@@ -3,16 +3,10 @@
 import panel_steps as steps
 import pytest
 from freecad_call import FreeCAD
-from processes import ROOT, display
+from processes import ROOT
 from readonly import read_only
 
 from lce_workbench.core import material
-
-
-@pytest.fixture(scope="module")
-def screen():
-    with display() as name:
-        yield name
 
 
 @pytest.fixture

@@ -7,18 +7,12 @@ import gui_steps as steps
 import pytest
 import trimesh
 from freecad_call import FreeCAD
-from processes import ROOT, display
+from processes import ROOT
 
 from lce_solver.surfaces import SURFACES
 from lce_workbench.cli import main
 
 STEPS = ["NewCell", "Design", "Predict", "Plates", "ChannelWindow", "Mask"]
-
-
-@pytest.fixture(scope="module")
-def screen():
-    with display() as name:
-        yield name
 
 
 @pytest.fixture(scope="module")
